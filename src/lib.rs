@@ -3,4 +3,5 @@
 
 pub mod constants;
 pub mod finding;
+pub mod math;
 pub mod spectrum;

@@ -9,7 +9,9 @@
 use std::sync::Arc;
 
 pub mod format;
+pub mod integrate;
 pub mod quantity;
+pub mod resample;
 
 pub use quantity::{Per, Quantity, SpectralUnit, UnitError, WavelengthUnit};
 

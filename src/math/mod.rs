@@ -1,0 +1,4 @@
+//! Numerical tools without units: interpolation kernels and bracketed minimisation.
+
+pub mod interpolate;
+pub mod minimise;
