@@ -1,7 +1,14 @@
 #![doc = include_str!("../README.md")]
 #![warn(missing_docs)]
 
+pub mod colorimetry;
 pub mod constants;
+pub mod conversion;
 pub mod finding;
+pub mod geometry;
+pub mod illuminant;
 pub mod math;
+pub mod photometry;
 pub mod spectrum;
+pub mod tables;
+pub mod units;

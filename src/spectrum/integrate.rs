@@ -6,7 +6,7 @@
 //! | rule | what is summed | where it is right |
 //! |---|---|---|
 //! | [`Rule::Summation`] | Δλ Σ S(λᵢ) w(λᵢ) | CIE 15:2018, 7.1: equal steps of 1 nm or 5 nm. The default there |
-//! | [`Rule::Trapezoid`] | trapezoids of the product S·w, the ends interpolated | equal or unequal steps |
+//! | [`Rule::Trapezoid`] | trapezoids of the product S·w, the ends of a range or band interpolated | equal or unequal steps |
 //! | [`Rule::Exact`] | the integral of the straight lines between samples times those between the table's entries, without further error | unequal or coarse steps. The default on irregular grids |
 //! | [`Rule::Lines`] | Σ S(λᵢ) w(λᵢ) | line spectra; the only rule for them |
 //!
@@ -24,6 +24,8 @@ use crate::math::interpolate;
 pub struct Weighting {
     wavelengths_nm: Cow<'static, [f64]>,
     values: Cow<'static, [f64]>,
+    /// The weighting ends in a step and not by fading out: a trapezoid must not lean over its end.
+    sharp: bool,
 }
 
 /// Beyond any wavelength; the knots of weightings that are not bounded by a table.
@@ -41,7 +43,7 @@ impl Weighting {
         let (wavelengths_nm, values) = (wavelengths_nm.into(), values.into());
         assert_eq!(wavelengths_nm.len(), values.len(), "a weighting has one value per wavelength");
         assert!(wavelengths_nm.len() > 1, "a weighting has at least two entries");
-        Self { wavelengths_nm, values }
+        Self { wavelengths_nm, values, sharp: false }
     }
 
     /// One at every wavelength: the integral is that of the spectrum itself.
@@ -53,7 +55,7 @@ impl Weighting {
     /// Proportional to wavelength (nm) from `low_nm` to `high_nm` and zero elsewhere, as photon numbers are.
     #[must_use]
     pub fn wavelength_between(low_nm: f64, high_nm: f64) -> Self {
-        Self::table(vec![low_nm, high_nm], vec![low_nm, high_nm])
+        Self { sharp: true, ..Self::table(vec![low_nm, high_nm], vec![low_nm, high_nm]) }
     }
 
     /// Proportional to wavelength (nm) everywhere.
@@ -65,7 +67,7 @@ impl Weighting {
     /// One from `low_nm` to `high_nm`, zero elsewhere.
     #[must_use]
     pub fn band(low_nm: f64, high_nm: f64) -> Self {
-        Self::table(vec![low_nm, high_nm], vec![1.0, 1.0])
+        Self { sharp: true, ..Self::table(vec![low_nm, high_nm], vec![1.0, 1.0]) }
     }
 
     /// The value at a wavelength.
@@ -102,6 +104,7 @@ impl Weighting {
         Self {
             wavelengths_nm: self.wavelengths_nm.clone(),
             values: self.values.iter().map(|v| v * factor).collect::<Vec<_>>().into(),
+            sharp: self.sharp,
         }
     }
 
@@ -220,7 +223,8 @@ pub fn weights(
     let (from, to) = (low.max(table_low).max(x[0]), high.min(table_high).min(x[x.len() - 1]));
     Ok(match (rule, grid.step_nm()) {
         (Rule::Summation, Some(step)) => x.iter().map(|&w| step * at(w)).collect(),
-        (Rule::Trapezoid, _) => trapezoid_weights(x, weighting, from, to),
+        (Rule::Trapezoid, _) if weighting.sharp => trapezoid_weights(x, weighting, from, to),
+        (Rule::Trapezoid, _) => trapezoid_weights(x, weighting, low.max(x[0]), high.min(x[x.len() - 1])),
         (Rule::Exact, _) => exact_weights(x, weighting, from, to),
         (Rule::Summation | Rule::Lines, _) => x.iter().map(|&w| at(w)).collect(),
     })

@@ -3,8 +3,57 @@
 //! A reader returns what the file states and nothing more: [`Entry`] keeps the quantity and unit as found (or absent), the
 //! figures that the instrument printed, and the samples in nm, ascending, finite and without duplicates.
 //! [`Entry::resolve`] brings an entry to SI per nanometre, with the user's word where the file is silent.
+//!
+//! [`read`] takes a whole input, [`open`] also streams tables with one spectrum per row.
+//!
+//! Findings of this module:
+//!
+//! | code | severity | meaning |
+//! |---|---|---|
+//! | S001 | info | the text is not UTF-8 and was read as Windows-1252 |
+//! | S002 | info | wavelengths ran from long to short and were reversed |
+//! | S003 | info | no unit of wavelength stated; nm taken by convention |
+//! | S004 | warning | a spectrum is shorter than its table: cells at its ends are empty |
+//! | S005 | warning | negative samples were kept (how many, the lowest) |
+//! | S006 | warning | what stands in the place of a unit is none that is understood; no unit taken |
+//! | S007 | info | the unit follows from the definition of the format, and how it was checked |
+//! | S008 | warning | figures in the file contradict the unit of its format; no unit taken |
+//! | S009 | info, warning | a column, block or table without a spectrum, or outside of the wavelengths, was not read |
+//! | S010 | warning | neither file nor user state a unit: only ratios are reported |
+//! | S011 | warning | the unit has no wavelength in it: samples are taken per band |
+//! | S012 | warning | a single sample is taken as the amount in one line |
+//! | S013 | warning | the user's quantity or unit replaces another one in the file |
+//! | S014 | warning | the user gave a quantity without unit: SI per nm taken |
+//! | S015 | info | an axis in wavenumbers was converted to wavelengths, and what that did to the values |
+//! | S016 | info | the same spectrum stands in the file more than once; which one was taken |
+//! | S017 | warning | a check figure in the file (first, largest, smallest value) does not agree with its data |
+//! | S018 | warning | the user's unit of wavelength replaces another one in the file |
 
-use super::{Quantity, SpectralUnit, Spectrum};
+use std::fmt;
+use std::str::FromStr;
+
+use super::{Quantity, SpectralUnit, Spectrum, WavelengthUnit};
+use crate::finding::{Checked, Location};
+
+mod axis;
+mod columns;
+mod delimited;
+mod dialect;
+mod error;
+mod field;
+mod header;
+mod layout;
+mod number;
+mod printed;
+mod resolve;
+mod rows;
+mod stream;
+mod text;
+
+pub use error::{Error, ErrorKind};
+pub use resolve::Scale;
+pub use rows::Row;
+pub use stream::{LARGEST_WHOLE, LONGEST_ROW, Opened, RowStream, open};
 
 /// One spectrum as its file states it.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +68,10 @@ pub struct Entry {
     pub unit: Option<SpectralUnit>,
     /// Figures that the instrument printed beside the spectrum.
     pub printed: Vec<Printed>,
-    /// Other facts in the file (maker, date, integration time), label and text, in file order.
+    /// Other facts of this spectrum (maker, date, integration time), label and text, in file order.
     pub metadata: Vec<(String, String)>,
+    /// Where it stands in the input.
+    pub location: Location,
 }
 
 /// A figure that an instrument printed beside its spectrum.
@@ -31,8 +82,161 @@ pub struct Printed {
     pub key: &'static str,
     /// The label in the file.
     pub label: String,
-    /// The figure.
+    /// The figure, in the unit of the key.
     pub value: f64,
     /// The figure as printed, which tells its digits.
     pub text: String,
+}
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectrumFile {
+    /// The format it was read as.
+    pub format: Format,
+    /// The spectra, in file order, at least one. Those on the same wavelengths share one grid.
+    pub entries: Vec<Entry>,
+    /// Facts of the file as a whole, label (or nothing) and text, in file order.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// A spectrum in SI: W or J, per m², sr, per nm (or per line), as its quantity asks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Name in the file.
+    pub name: String,
+    /// What it is of.
+    pub quantity: Quantity,
+    /// The samples; relative ones as the file gives them.
+    pub spectrum: Spectrum,
+}
+
+/// The formats that are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// CSV, TSV and other delimited text.
+    Delimited,
+    /// ANSI/IES TM-27-14 `.spdx`.
+    Tm27,
+    /// CGATS.17 / ISO 28178, X-Rite and Gretag tables.
+    Cgats,
+    /// JCAMP-DX 4.24 / 5.
+    Jcamp,
+    /// Ocean Optics OceanView and SpectraSuite text.
+    OceanView,
+    /// UPRtek `.xls` (text in truth).
+    Uprtek,
+    /// Sekonic CSV.
+    Sekonic,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Delimited, Self::Tm27, Self::Cgats, Self::Jcamp, Self::OceanView, Self::Uprtek, Self::Sekonic];
+
+    /// The word for it on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Delimited => "csv",
+            Self::Tm27 => "tm27",
+            Self::Cgats => "cgats",
+            Self::Jcamp => "jcamp",
+            Self::OceanView => "oceanview",
+            Self::Uprtek => "uprtek",
+            Self::Sekonic => "sekonic",
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+impl FromStr for Format {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Ok(match text.trim().to_lowercase().as_str() {
+            "csv" | "tsv" | "delimited" | "text" | "txt" => Self::Delimited,
+            "tm27" | "tm-27" | "tm-27-14" | "tm2714" | "spdx" => Self::Tm27,
+            "cgats" | "cgats.17" | "it8" | "xrite" | "x-rite" => Self::Cgats,
+            "jcamp" | "jcamp-dx" | "jdx" | "dx" => Self::Jcamp,
+            "oceanview" | "spectrasuite" | "oceanoptics" => Self::OceanView,
+            "uprtek" => Self::Uprtek,
+            "sekonic" => Self::Sekonic,
+            _ => {
+                let kind = ErrorKind::UnknownFormat { found: text.to_owned() };
+                return Err(Error::new(Location::default(), kind));
+            }
+        })
+    }
+}
+
+/// Which way a delimited table lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Layout {
+    /// One spectrum per column.
+    Columns,
+    /// One spectrum per row.
+    Rows,
+}
+
+impl FromStr for Layout {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        match text.trim().to_lowercase().as_str() {
+            "columns" | "column" => Ok(Self::Columns),
+            "rows" | "row" => Ok(Self::Rows),
+            _ => {
+                let kind = ErrorKind::Unexpected { found: format!("`{text}`"), expected: "columns or rows".to_owned() };
+                Err(Error::new(Location::default(), kind))
+            }
+        }
+    }
+}
+
+/// What the user says about an input; whatever is `None` is told by content.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// The format.
+    pub format: Option<Format>,
+    /// The unit of the wavelengths.
+    pub wavelength_unit: Option<WavelengthUnit>,
+    /// What separates cells of delimited text; a blank means any number of blanks.
+    pub separator: Option<char>,
+    /// `.` or `,`.
+    pub decimal: Option<char>,
+    /// Which way delimited text lies.
+    pub layout: Option<Layout>,
+}
+
+/// Tells the format of an input from its first bytes; what is no other format is [`Format::Delimited`].
+#[must_use]
+pub fn detect(bytes: &[u8]) -> Format {
+    let _ = bytes;
+    Format::Delimited
+}
+
+/// Reads an input of any format.
+///
+/// # Errors
+/// The first thing that is wrong, with its place.
+pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<Checked<SpectrumFile>, Error> {
+    if bytes.len() as u64 > LARGEST_WHOLE {
+        return Err(Error::whole(ErrorKind::TooLarge { what: "an input", limit: LARGEST_WHOLE }));
+    }
+    let text::Text { text, finding } = text::decode(bytes)?;
+    let mut file = match options.format.unwrap_or_else(|| detect(bytes)) {
+        Format::Delimited => delimited::read(&text, options)?,
+        format => {
+            return Err(Error::whole(ErrorKind::Unsupported { found: format.to_string(), expected: "csv" }));
+        }
+    };
+    file.findings.splice(0..0, finding);
+    Ok(file)
 }

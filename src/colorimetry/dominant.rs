@@ -1,0 +1,102 @@
+//! Dominant wavelength and excitation purity (CIE 15:2018, 9.2–9.3).
+
+use super::chromaticity;
+use super::observer::Observer;
+
+/// Below this distance from the white point in (x, y) there is no hue: the print of CIE chromaticities to four digits.
+const ACHROMATIC: f64 = 1e-5;
+/// The spectral locus is used between these wavelengths, nm: beyond, the table's few digits make it wander.
+const LOCUS_RANGE_NM: (f64, f64) = (380.0, 700.0);
+
+/// The hue and strength of a chromaticity, against a white point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dominant {
+    /// Dominant wavelength, nm; for purples the complementary wavelength with a minus sign, as CIE 15 writes λ_c.
+    pub wavelength_nm: f64,
+    /// Excitation purity: distance from white over that of the boundary (spectral locus or purple line) in the same
+    /// direction; 0 at white, 1 on the boundary.
+    pub excitation_purity: f64,
+}
+
+/// The spectral locus of an observer: wavelength in nm, x, y.
+#[must_use]
+pub fn spectral_locus(observer: Observer) -> Vec<[f64; 3]> {
+    let [x, y, z] = observer.colour_matching_functions();
+    let (low, high) = LOCUS_RANGE_NM;
+    (x.wavelengths_nm().iter())
+        .filter(|w| (low..=high).contains(*w))
+        .filter_map(|&w| chromaticity::xy([x.at(w), y.at(w), z.at(w)]).map(|[cx, cy]| [w, cx, cy]))
+        .collect()
+}
+
+/// Dominant wavelength and purity of `xy` against the white point `white_xy`; `None` where the two coincide.
+///
+/// The ray from white through the colour is cut with the straight pieces between the 1 nm points of the spectral locus,
+/// 380–700 nm; where it meets the purple line, the wavelength is that of the opposite ray, negative.
+#[must_use]
+pub fn dominant(xy: [f64; 2], white_xy: [f64; 2], observer: Observer) -> Option<Dominant> {
+    let locus = spectral_locus(observer);
+    let direction = [xy[0] - white_xy[0], xy[1] - white_xy[1]];
+    if !(direction[0].hypot(direction[1]) > ACHROMATIC) {
+        return None;
+    }
+    let (first, last) = (*locus.first()?, *locus.last()?);
+    if let Some((t, wavelength_nm)) = cut_locus(white_xy, direction, &locus) {
+        return Some(Dominant { wavelength_nm, excitation_purity: 1.0 / t });
+    }
+    let (_, complementary) = cut_locus(white_xy, [-direction[0], -direction[1]], &locus)?;
+    let (t, _) = cut(white_xy, direction, [first[1], first[2]], [last[1], last[2]])?;
+    Some(Dominant { wavelength_nm: -complementary, excitation_purity: 1.0 / t })
+}
+
+fn cut_locus(white: [f64; 2], direction: [f64; 2], locus: &[[f64; 3]]) -> Option<(f64, f64)> {
+    locus.windows(2).find_map(|w| {
+        let (t, s) = cut(white, direction, [w[0][1], w[0][2]], [w[1][1], w[1][2]])?;
+        Some((t, w[0][0] + s * (w[1][0] - w[0][0])))
+    })
+}
+
+/// Where the ray `origin + t·direction`, t > 0, meets the segment a–b: (t, place on the segment from 0 to 1).
+fn cut(origin: [f64; 2], direction: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Option<(f64, f64)> {
+    let edge = [b[0] - a[0], b[1] - a[1]];
+    let to_a = [a[0] - origin[0], a[1] - origin[1]];
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let denominator = cross(direction, edge);
+    let (t, s) = (cross(to_a, edge) / denominator, cross(to_a, direction) / denominator);
+    (t > 0.0 && (0.0..=1.0).contains(&s) && t.is_finite()).then_some((t, s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EQUAL_ENERGY: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
+
+    #[test]
+    fn spectral_colours_are_their_own_dominant_wavelength() {
+        for [w, x, y] in spectral_locus(Observer::Cie1931).into_iter().skip(20) {
+            let got = dominant([x, y], EQUAL_ENERGY, Observer::Cie1931).expect("coloured");
+            assert!((got.excitation_purity - 1.0).abs() < 1e-9, "{w}: {got:?}");
+            // Beyond 690 nm the tabulated locus stands still.
+            if (420.0..=680.0).contains(&w) {
+                assert!((got.wavelength_nm - w).abs() < 1e-6, "{w}: {got:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn halfway_to_white_has_half_the_purity() {
+        let [_, x, y] = spectral_locus(Observer::Cie1931)[200];
+        let half = [0.5 * (x + EQUAL_ENERGY[0]), 0.5 * (y + EQUAL_ENERGY[1])];
+        let got = dominant(half, EQUAL_ENERGY, Observer::Cie1931).expect("coloured");
+        assert!((got.wavelength_nm - 580.0).abs() < 1e-6 && (got.excitation_purity - 0.5).abs() < 1e-9, "{got:?}");
+    }
+
+    #[test]
+    fn purple_has_a_complementary_wavelength_and_white_has_none() {
+        let got = dominant([0.35, 0.15], EQUAL_ENERGY, Observer::Cie1931).expect("coloured");
+        assert!((-570.0..-530.0).contains(&got.wavelength_nm) && got.excitation_purity < 1.0, "{got:?}");
+        assert_eq!(dominant(EQUAL_ENERGY, EQUAL_ENERGY, Observer::Cie1931), None);
+        assert_eq!(dominant([f64::NAN, 0.3], EQUAL_ENERGY, Observer::Cie1931), None);
+    }
+}

@@ -1,0 +1,181 @@
+//! Colour fidelity and gamut of ANSI/IES TM-30-20 (fidelity as in CIE 224:2017): Rf, Rg and sixteen hue bins.
+
+use super::cam02::Cam02;
+use super::cct::{self, Method};
+use super::chromaticity::uv_1960;
+use super::cri::{Error, reflectances};
+use super::observer::{self, Observer};
+use super::reference::ReferencePlan;
+use super::samples::SamplePlan;
+use crate::constants::SecondRadiation;
+use crate::illuminant;
+use crate::spectrum::integrate::Contract;
+use crate::spectrum::{Grid, Sampling};
+use crate::tables;
+
+/// Number of hue bins.
+pub const BINS: usize = 16;
+/// Number of colour evaluation samples.
+pub const SAMPLES: usize = 99;
+/// Scale of ΔE′ in the fidelity index (TM-30-18; 7.54 in TM-30-15).
+const FIDELITY_SCALE: f64 = 6.73;
+/// Range of the method, nm.
+const RANGE_NM: (f64, f64) = (380.0, 780.0);
+/// Below the first temperature the reference is a blackbody, above the second daylight, between them a mixture, K.
+const BLEND_K: (f64, f64) = (4000.0, 5000.0);
+
+/// One hue bin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bin {
+    /// The reference's mean (a′, b′) divided by its own length: a point of the unit circle.
+    pub reference: [f64; 2],
+    /// The test source's mean (a′, b′) divided by the reference's length, as the colour vector graphic shows it.
+    pub test: [f64; 2],
+    /// Local chroma shift Rcs (0.1 is 10 % more chroma).
+    pub chroma_shift: f64,
+    /// Local hue shift Rhs, rad.
+    pub hue_shift: f64,
+    /// Local colour fidelity Rf,h.
+    pub fidelity: f64,
+    /// Number of samples whose reference hue falls into the bin.
+    pub samples: usize,
+}
+
+/// The indices of one source. Not rounded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tm30 {
+    /// Fidelity index Rf, 0 to 100.
+    pub rf: f64,
+    /// Gamut index Rg, 100 for the reference; `None` where a bin is empty.
+    pub rg: Option<f64>,
+    /// The bins in order of hue, from 0° in steps of 22.5°; `None` where no sample's reference hue falls into one.
+    pub bins: [Option<Bin>; BINS],
+    /// Fidelity of each of the 99 samples.
+    pub sample_fidelity: Vec<f64>,
+    /// Colour temperature on which the reference was built, K.
+    pub cct_k: f64,
+}
+
+/// Samples and references compiled for one grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    colour: observer::Plan,
+    test: SamplePlan,
+    own: Option<SamplePlan>,
+    reference: ReferencePlan,
+    c2: SecondRadiation,
+}
+
+/// Why a plan gave no indices.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Undefined {
+    /// No colour temperature to build a reference on.
+    #[error("no reference illuminant: {0}")]
+    Cct(#[from] cct::Undefined),
+    /// Any other reason.
+    #[error(transparent)]
+    Other(#[from] Error),
+}
+
+/// 10 ln(e^{x/10} + 1) of x = 100 − 6.73 ΔE′: the index on its scale that ends at 0.
+fn fidelity(difference: f64) -> f64 {
+    10.0 * ((100.0 - FIDELITY_SCALE * difference) / 10.0).exp().ln_1p()
+}
+
+impl Plan {
+    /// Compiles the calculation for spectra on `grid`.
+    ///
+    /// # Errors
+    /// [`Error::Rule`] where the contract's rule does not fit the grid; the others only for a broken build.
+    pub fn new(grid: &Grid, sampling: Sampling, contract: &Contract, c2: SecondRadiation) -> Result<Self, Error> {
+        let (low, high) = contract.range_nm.unwrap_or(RANGE_NM);
+        let contract = Contract { rule: contract.rule, range_nm: Some((low.max(RANGE_NM.0), high.min(RANGE_NM.1))) };
+        let samples = reflectances(tables::get("ies-ces99")?);
+        let plan = |grid: &Grid, sampling, contract: &Contract| {
+            SamplePlan::new(Observer::Cie1964, &samples, grid, sampling, contract)
+        };
+        let test = plan(grid, sampling, &contract)?;
+        let colour = observer::Plan::new(Observer::Cie1931, grid, sampling, &contract)?;
+        if sampling == Sampling::Density {
+            return Ok(Self { colour, test, own: None, reference: ReferencePlan::new(grid, c2)?, c2 });
+        }
+        let fine = Grid::uniform(380.0, 1.0, 401).map_err(illuminant::Error::from)?;
+        let own = Some(plan(&fine, Sampling::Density, &Contract { rule: None, range_nm: contract.range_nm })?);
+        Ok(Self { colour, test, own, reference: ReferencePlan::new(&fine, c2)?, c2 })
+    }
+
+    /// The reference spectrum for a colour temperature: blackbody to 4000 K, daylight from 5000 K, and between them the two
+    /// mixed in proportion, each scaled to the same luminous content (CIE 224:2017, 4.2).
+    fn reference(&self, kelvin: f64, plan: &SamplePlan) -> Result<Vec<f64>, Error> {
+        let (low, high) = BLEND_K;
+        if kelvin <= low {
+            return Ok(self.reference.planck(kelvin));
+        }
+        let daylight = self.reference.daylight(kelvin)?;
+        if kelvin >= high {
+            return Ok(daylight);
+        }
+        let planck = self.reference.planck(kelvin);
+        let share = (high - kelvin) / (high - low);
+        let (p, d) = (share / plan.white(&planck)[1], (1.0 - share) / plan.white(&daylight)[1]);
+        Ok(planck.iter().zip(&daylight).map(|(a, b)| p * a + d * b).collect())
+    }
+
+    /// The indices of a spectrum (values on the plan's grid, any scale).
+    ///
+    /// # Errors
+    /// [`Undefined::Cct`] where the source has no colour temperature, [`Error::Dark`] without luminous content.
+    pub fn evaluate(&self, values: &[f64]) -> Result<Tm30, Undefined> {
+        let uv = uv_1960(self.colour.xyz(values)).ok_or(cct::Undefined::Black)?;
+        let cct_k = cct::correlated(uv, Method::Exact, self.c2)?.kelvin;
+        let reference_plan = self.own.as_ref().unwrap_or(&self.test);
+        let reference = self.reference(cct_k, reference_plan)?;
+        let (white_t, white_r) = (self.test.white(values), reference_plan.white(&reference));
+        let dark = || Undefined::from(Error::Dark);
+        let (cam_t, cam_r) = (Cam02::new(white_t).ok_or_else(dark)?, Cam02::new(white_r).ok_or_else(dark)?);
+        let mut sums = [[0.0_f64; 5]; BINS];
+        let mut counts = [0_usize; BINS];
+        let mut sample_fidelity = Vec::with_capacity(SAMPLES);
+        let mut total = 0.0;
+        for (test, reference) in self.test.samples(values).zip(reference_plan.samples(&reference)) {
+            let t = cam_t.ucs(test.map(|v| v * 100.0 / white_t[1]));
+            let r = cam_r.ucs(reference.map(|v| v * 100.0 / white_r[1]));
+            let difference = (0..3).map(|i| (t[i] - r[i]).powi(2)).sum::<f64>().sqrt();
+            total += difference;
+            sample_fidelity.push(fidelity(difference));
+            let turn = r[2].atan2(r[1]).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
+            let bin = ((turn * BINS as f64) as usize).min(BINS - 1);
+            counts[bin] += 1;
+            for (sum, v) in sums[bin].iter_mut().zip([r[1], r[2], t[1], t[2], difference]) {
+                *sum += v;
+            }
+        }
+        let means: [Option<[f64; 5]>; BINS] =
+            std::array::from_fn(|j| (counts[j] > 0).then(|| sums[j].map(|s| s / counts[j] as f64)));
+        let area = |at: usize| -> Option<f64> {
+            (0..BINS).try_fold(0.0, |sum, j| {
+                let (p, q) = (means[j]?, means[(j + 1) % BINS]?);
+                Some(sum + 0.5 * (p[at] * q[at + 1] - p[at + 1] * q[at]))
+            })
+        };
+        let rg = area(2).zip(area(0)).map(|(t, r)| 100.0 * t / r);
+        let bins = std::array::from_fn(|j| means[j].map(|m| bin(m, counts[j])));
+        Ok(Tm30 { rf: fidelity(total / sample_fidelity.len() as f64), rg, bins, sample_fidelity, cct_k })
+    }
+}
+
+/// A bin of its means [a′ᵣ, b′ᵣ, a′ₜ, b′ₜ, ΔE′] (TM-30-20, 4.5–4.8).
+fn bin([ar, br, at, bt, difference]: [f64; 5], samples: usize) -> Bin {
+    let length = ar.hypot(br);
+    let reference = [ar / length, br / length];
+    let shift = [(at - ar) / length, (bt - br) / length];
+    Bin {
+        reference,
+        test: [reference[0] + shift[0], reference[1] + shift[1]],
+        chroma_shift: shift[0] * reference[0] + shift[1] * reference[1],
+        hue_shift: shift[1] * reference[0] - shift[0] * reference[1],
+        fidelity: fidelity(difference),
+        samples,
+    }
+}

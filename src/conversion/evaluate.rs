@@ -1,0 +1,321 @@
+//! From compiled plans and one spectrum to all figures and findings.
+
+use super::figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
+use super::{Error, Plan, Settings};
+use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb, tm30};
+use crate::finding::{Checked, Finding};
+use crate::photometry::luminous::Luminous;
+use crate::photometry::{alpha_opic, hazard, mesopic, photon, transfer};
+use crate::spectrum::integrate::{Rule, dot};
+use crate::spectrum::{Quantity, Sampling, Spectrum};
+
+/// A relative error bound from which a finding becomes a warning.
+const NOTABLE: f64 = 1e-3;
+
+pub(super) fn evaluate(
+    settings: &Settings,
+    plan: &Plan,
+    name: &str,
+    quantity: Quantity,
+    spectrum: &Spectrum,
+) -> Result<Checked<Conversion>, Error> {
+    let mut findings = Vec::new();
+    let values = spectrum.values();
+    let groups = settings.groups;
+    let luminous = plan.luminous.evaluate(values);
+    let integrals = [luminous.radiometric, luminous.photopic, luminous.scotopic];
+    if !integrals.iter().all(|v| v.is_finite()) {
+        findings.push(
+            Finding::error("P011", "the integrals exceed the largest double (1.8e308)")
+                .hint("give the spectrum in a larger unit"),
+        );
+    }
+    let xyz = plan.colour.xyz(values);
+    let integration = integration(settings, plan, spectrum, &luminous, &mut findings);
+    negative_samples(plan, spectrum, &luminous, settings.efficacy.k_m, &mut findings);
+    // Ratios to a luminous content that is zero, or negative from noise, mean nothing.
+    let lit = luminous.photopic > 0.0 && luminous.photopic.is_finite() && xyz.iter().all(|v| v.is_finite());
+    if !lit {
+        findings.push(
+            Finding::error("P005", format!("no luminous content (∫ S V dλ · K_m = {}): ratios, colour and colour quality are not defined", luminous.photopic))
+                .hint("the spectrum has no light between 360 nm and 830 nm, or its noise outweighs it"),
+        );
+    }
+    let mesopic = mesopic_state(settings, &luminous, lit, &mut findings)?;
+    let absolute = absolute(settings, quantity, &luminous, mesopic.as_ref())?;
+    let xyz_scale = if quantity == Quantity::Relative { XyzScale::Hundred } else { XyzScale::Absolute };
+    let factor = match xyz_scale {
+        XyzScale::Absolute => settings.efficacy.k_m,
+        XyzScale::Hundred => 100.0 / xyz[1],
+    };
+    let xyz_1931 = plan.colour_1931.as_ref().map_or(xyz, |p| p.xyz(values));
+    let coloured = lit.then_some(xyz).filter(|v| v[1] > 0.0);
+    let uv = if lit { chromaticity::uv_1960(xyz_1931) } else { None };
+    let mut out = Conversion {
+        name: name.to_owned(),
+        quantity,
+        absolute,
+        mesopic,
+        efficacy_lm_per_w: if lit { luminous.efficacy_lm_per_w().filter(|_| luminous.radiometric > 0.0) } else { None },
+        scotopic_photopic_ratio: if lit { luminous.scotopic_photopic_ratio() } else { None },
+        xyz: match xyz_scale {
+            XyzScale::Absolute => Some(xyz.map(|v| v * factor)),
+            XyzScale::Hundred => coloured.map(|v| v.map(|v| v * factor)),
+        },
+        xyz_scale,
+        xy: coloured.and_then(chromaticity::xy),
+        uv_prime: coloured.and_then(chromaticity::uv_prime),
+        cct: None,
+        dominant: None,
+        peak_wavelength_nm: None,
+        centroid_wavelength_nm: None,
+        fwhm_nm: None,
+        cri: None,
+        tm30: None,
+        alpha_opic: Vec::new(),
+        hazard: Vec::new(),
+        photons: plan.photon.as_ref().map(|p| p.evaluate(values)),
+        rgb: Vec::new(),
+        integration,
+    };
+    if lit {
+        colour(settings, plan, values, uv, &mut out, &mut findings);
+    }
+    if groups.rgb {
+        out.rgb = rgb_figures(settings, xyz_1931, lit, &mut findings);
+    }
+    if let Some(plan) = &plan.alpha_opic {
+        out.alpha_opic = plan.evaluate(values).to_vec();
+        coverage(spectrum, alpha_opic::RANGE_NM, "the action spectra of CIE S 026", &mut findings);
+    }
+    if plan.photon.is_some() {
+        coverage(spectrum, photon::PAR_NM, "PAR", &mut findings);
+    }
+    if let Some(plan) = &plan.hazard {
+        out.hazard = hazards(plan, values, &mut findings);
+    }
+    if groups.shape {
+        shape(plan, spectrum, luminous.radiometric, &mut out, &mut findings);
+    }
+    Ok(Checked { value: out, findings })
+}
+
+fn integration(
+    settings: &Settings,
+    plan: &Plan,
+    spectrum: &Spectrum,
+    luminous: &Luminous,
+    findings: &mut Vec<Finding>,
+) -> Integration {
+    let (first, last) = spectrum.grid().range_nm();
+    let (low, high) = settings.contract.range_nm.unwrap_or((first, last));
+    let error_bound = plan.luminous.photopic_error.bound(spectrum, luminous.photopic / settings.efficacy.k_m);
+    if plan.sampling == Sampling::Density {
+        if let Some(bound) = error_bound.truncation_relative.filter(|b| *b > 0.0) {
+            let message = format!(
+                "the spectrum covers {first}–{last} nm; what it may have beyond changes the photopic integral by at most {:.2e} of it, if it is nowhere larger there than its largest sample",
+                bound
+            );
+            findings.push(if bound > NOTABLE { Finding::warning("P002", message) } else { Finding::info("P002", message) });
+        }
+        if let Some(bound) = error_bound.step_relative.filter(|b| *b > 0.01) {
+            let widest = spectrum.grid().widest_step_nm();
+            findings.push(
+                Finding::warning(
+                    "P003",
+                    format!("with steps up to {widest} nm the photopic integral may be off by {:.1} %", 100.0 * bound),
+                )
+                .hint("measure with smaller steps; --rule exact or --resample show what interpolation makes of it"),
+            );
+        }
+    }
+    Integration {
+        rule: plan.rule,
+        photon_rule: if plan.rule == Rule::Summation { Rule::Trapezoid } else { plan.rule },
+        range_nm: (first.max(low), last.min(high)),
+        step_nm: spectrum.grid().step_nm(),
+        samples: spectrum.grid().len(),
+        error_bound,
+    }
+}
+
+fn negative_samples(plan: &Plan, spectrum: &Spectrum, luminous: &Luminous, k_m: f64, findings: &mut Vec<Finding>) {
+    let count = spectrum.values().iter().filter(|v| **v < 0.0).count();
+    if count == 0 {
+        return;
+    }
+    let negative: Vec<f64> = spectrum.values().iter().map(|v| v.min(0.0)).collect();
+    // ȳ of the observer and V(λ) are close enough to state a share; exact for the default pair.
+    let share = k_m * dot(&plan.colour.weights()[1], &negative) / luminous.photopic;
+    let effect = if share.is_finite() { format!("they lower the photopic integral by {:.2e} of it", share.abs()) } else { "there is nothing to set them against".to_owned() };
+    findings.push(
+        Finding::warning("P006", format!("{count} of {} samples are negative and were kept; {effect}", spectrum.values().len()))
+            .hint("negative samples are noise about zero; clipping them would raise every integral"),
+    );
+}
+
+fn mesopic_state(
+    settings: &Settings,
+    luminous: &Luminous,
+    lit: bool,
+    findings: &mut Vec<Finding>,
+) -> Result<Option<Mesopic>, Error> {
+    let Some(adaptation_luminance) = settings.mesopic_adaptation else { return Ok(None) };
+    let ratio = luminous.scotopic_photopic_ratio().filter(|r| lit && *r >= 0.0);
+    let Some(ratio) = ratio else {
+        findings.push(Finding::error("P010", "no S/P ratio, and so no mesopic figures"));
+        return Ok(None);
+    };
+    let adaptation = mesopic::adaptation(adaptation_luminance, ratio)?;
+    Ok(Some(Mesopic { adaptation_luminance, adaptation }))
+}
+
+fn absolute(
+    settings: &Settings,
+    quantity: Quantity,
+    luminous: &Luminous,
+    mesopic: Option<&Mesopic>,
+) -> Result<Vec<AbsoluteFigures>, Error> {
+    if quantity == Quantity::Relative {
+        return Ok(Vec::new());
+    }
+    let figures = |quantity, factor: f64, relations| AbsoluteFigures {
+        quantity,
+        factor,
+        radiometric: factor * luminous.radiometric,
+        photopic: factor * luminous.photopic,
+        scotopic: factor * luminous.scotopic,
+        mesopic: mesopic.map(|m| mesopic::mesopic(factor * luminous.photopic, factor * luminous.scotopic, m.adaptation.m)),
+        relations,
+    };
+    let mut all = vec![figures(quantity, 1.0, Vec::new())];
+    let derived = transfer::derive(quantity, &settings.geometry)?;
+    all.extend(derived.into_iter().map(|d| figures(d.quantity, d.factor, d.relations)));
+    Ok(all)
+}
+
+/// CCT, dominant wavelength and colour rendition.
+fn colour(
+    settings: &Settings,
+    plan: &Plan,
+    values: &[f64],
+    uv: Option<[f64; 2]>,
+    out: &mut Conversion,
+    findings: &mut Vec<Finding>,
+) {
+    let found = uv.ok_or(cct::Undefined::Black).and_then(|uv| cct::correlated(uv, settings.cct_method, settings.c2));
+    if settings.groups.colour {
+        match found {
+            Ok(cct) => out.cct = Some(cct),
+            Err(why) => findings.push(Finding::warning("C001", format!("no correlated colour temperature: {why}"))),
+        }
+        out.dominant = out.xy.and_then(|xy| dominant::dominant(xy, settings.dominant_white_xy, settings.observer));
+        if out.dominant.is_none() {
+            findings.push(Finding::info("C005", "no dominant wavelength: the chromaticity is that of the white point"));
+        }
+    }
+    if let Some(cri_plan) = &plan.cri {
+        // Rᵢ needs the temperature itself, whatever method the user wants to see printed.
+        let exact = uv.ok_or(cct::Undefined::Black).and_then(|uv| cct::nearest(uv, settings.c2));
+        match exact.map(|cct| cri_plan.evaluate(values, cct.kelvin)) {
+            Ok(Ok(cri)) => {
+                if cri.distance_uv > cri::CHROMATICITY_TOLERANCE {
+                    findings.push(Finding::warning(
+                        "C003",
+                        format!(
+                            "the source is {:.4} from its reference in (u, v); beyond {} CIE 13.3 calls the colour rendering indices less accurate",
+                            cri.distance_uv,
+                            cri::CHROMATICITY_TOLERANCE
+                        ),
+                    ));
+                }
+                out.cri = Some(cri);
+            }
+            Ok(Err(why)) => findings.push(Finding::warning("C002", format!("no colour rendering index: {why}"))),
+            Err(why) => findings.push(Finding::warning("C002", format!("no colour rendering index: {why}"))),
+        }
+    }
+    if let Some(tm30_plan) = &plan.tm30 {
+        match tm30_plan.evaluate(values) {
+            Ok(tm30) => {
+                if tm30.rg.is_none() {
+                    findings.push(Finding::warning("C004", "no gamut index Rg: a hue bin has no sample"));
+                }
+                out.tm30 = Some(tm30);
+            }
+            Err(why @ (tm30::Undefined::Cct(_) | tm30::Undefined::Other(_))) => {
+                findings.push(Finding::warning("C004", format!("no TM-30 figures: {why}")));
+            }
+        }
+    }
+}
+
+fn rgb_figures(settings: &Settings, xyz: [f64; 3], lit: bool, findings: &mut Vec<Finding>) -> Vec<RgbFigure> {
+    if !lit {
+        return Vec::new();
+    }
+    let all: Vec<RgbFigure> = (rgb::SPACES.iter())
+        .filter_map(|space| {
+            let colour = rgb::colour(xyz, space, settings.adaptation, settings.rgb_white)?;
+            Some(RgbFigure { key: space.key, colour })
+        })
+        .collect();
+    let clipped: Vec<String> = (all.iter())
+        .filter(|f| f.colour.out_of_gamut)
+        .map(|f| format!("{} ({:.0} % of the largest component)", f.key, 100.0 * f.colour.clipped))
+        .collect();
+    if !clipped.is_empty() {
+        findings.push(Finding::info("C006", format!("the colour is outside the gamut of {}; negative components were cut in the encoded values", clipped.join(", "))));
+    }
+    all
+}
+
+/// Says so where a spectrum ends inside the range of a weighting that has no bound of its own.
+fn coverage(spectrum: &Spectrum, (low, high): (f64, f64), of: &str, findings: &mut Vec<Finding>) {
+    let (first, last) = spectrum.grid().range_nm();
+    if spectrum.sampling() == Sampling::Density && (first > low || last < high) {
+        findings.push(Finding::warning(
+            "P008",
+            format!("the spectrum covers {first}–{last} nm of the {low}–{high} nm of {of}; nothing is added for the rest"),
+        ));
+    }
+}
+
+fn hazards(plan: &hazard::Plan, values: &[f64], findings: &mut Vec<Finding>) -> Vec<hazard::Hazard> {
+    let all: Vec<hazard::Hazard> = plan.evaluate(values).filter(|h| h.covered_nm.is_some()).collect();
+    for hazard in all.iter().filter(|h| !h.complete) {
+        let (low, high) = hazard.covered_nm.unwrap_or_default();
+        findings.push(Finding::info(
+            "P007",
+            format!("{} is weighted over {low}–{high} nm only: the spectrum does not cover the rest of its weighting", hazard.key),
+        ));
+    }
+    all
+}
+
+/// Peak, centroid and full width at half maximum.
+fn shape(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversion, findings: &mut Vec<Finding>) {
+    let (peak_nm, peak) = spectrum.peak();
+    if !(peak > 0.0) {
+        return;
+    }
+    out.peak_wavelength_nm = Some(peak_nm);
+    let centroid = dot(&plan.centroid, spectrum.values()) / radiometric;
+    out.centroid_wavelength_nm = Some(centroid).filter(|c| c.is_finite() && radiometric > 0.0);
+    if spectrum.sampling() == Sampling::Density {
+        out.fwhm_nm = full_width(spectrum, peak_nm, 0.5 * peak);
+        if out.fwhm_nm.is_none() {
+            findings.push(Finding::info("P009", "no full width at half maximum: the spectrum does not fall to half on both sides of its peak"));
+        }
+    }
+}
+
+/// Distance between the places on both sides of the peak where straight lines between samples first reach `level`.
+fn full_width(spectrum: &Spectrum, peak_nm: f64, level: f64) -> Option<f64> {
+    let (x, y) = (spectrum.wavelengths_nm(), spectrum.values());
+    let at = x.iter().position(|w| *w == peak_nm)?;
+    let cross = |inner: usize, outer: usize| x[inner] + (x[outer] - x[inner]) * (y[inner] - level) / (y[inner] - y[outer]);
+    let left = (1..=at).rev().find(|&i| y[i - 1] <= level).map(|i| cross(i, i - 1))?;
+    let right = (at..x.len() - 1).find(|&i| y[i + 1] <= level).map(|i| cross(i, i + 1))?;
+    Some(right - left)
+}

@@ -1,0 +1,15 @@
+//! From radiometric spectra to what eyes, receptors, plants and hazards make of them.
+//!
+//! - [`luminous`]: photopic and scotopic quantities with K_m and K′_m; the luminous efficiency functions.
+//! - [`mesopic`]: the MES2 system of CIE 191.
+//! - [`alpha_opic`]: CIE S 026.
+//! - [`photon`]: photon numbers, PAR and PPFD.
+//! - [`hazard`]: blue-light and actinic-UV weighting.
+//! - [`transfer`]: geometry that turns one quantity into another.
+
+pub mod alpha_opic;
+pub mod hazard;
+pub mod luminous;
+pub mod mesopic;
+pub mod photon;
+pub mod transfer;

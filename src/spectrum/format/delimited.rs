@@ -1,0 +1,172 @@
+//! Delimited text: CSV, TSV and whatever spreadsheets and scripts make of them.
+//!
+//! Above the table may stand `key,value` or `key: value` lines and comments (`#`, `%`, `//`, `!`): they become metadata. A key
+//! `unit` or `quantity` among them states these for all spectra of the file. After the table nothing may follow.
+
+use super::super::Spectrum;
+use super::super::{Quantity, SpectralUnit};
+use super::columns;
+use super::dialect::{self, Dialect, Lines, Record};
+use super::error::{Error, ErrorKind};
+use super::field::split;
+use super::header::{self, UnitText};
+use super::layout;
+use super::rows::{Negatives, RowTable};
+use super::{Entry, Format, ReadOptions, SpectrumFile, printed};
+use crate::finding::{Checked, Finding, Location};
+
+/// A table of rows as its first lines tell it.
+pub(super) struct Head {
+    pub table: RowTable,
+    pub metadata: Vec<(String, String)>,
+    pub findings: Vec<Finding>,
+    /// The line of the heading; rows follow.
+    pub line: u64,
+}
+
+/// A text sorted into records, with its dialect.
+struct Table<'a> {
+    lines: Lines<'a>,
+    records: Vec<Record<'a>>,
+    dialect: Dialect,
+}
+
+impl<'a> Table<'a> {
+    fn new(text: &'a str, options: &ReadOptions) -> Result<Self, Error> {
+        let lines = dialect::lines(text, 1);
+        if lines.records.is_empty() {
+            return Err(Error::whole(ErrorKind::Empty));
+        }
+        let dialect = Dialect::find(&lines.records, lines.declared, options)?;
+        let records = dialect::join_quoted(text, &lines.records, dialect.separator)?;
+        Ok(Self { lines, records, dialect })
+    }
+
+    /// Facts above the table: lines before `end` but for those at `skip`, and all comments.
+    fn metadata(&self, end: usize, skip: [Option<usize>; 2]) -> Vec<(String, String)> {
+        let mut facts = Vec::new();
+        for (comment, _) in &self.lines.comments {
+            facts.extend(fact(comment.text));
+        }
+        for (at, record) in self.records[..end].iter().enumerate() {
+            if skip.contains(&Some(at)) {
+                continue;
+            }
+            let cells: Vec<String> =
+                split(record.text, self.dialect.separator).map(|f| f.text().into_owned()).collect();
+            match &cells[..] {
+                [key, rest @ ..] if !rest.is_empty() && !rest[0].is_empty() && !key.contains(": ") => {
+                    facts.push((key.trim_end_matches(':').to_owned(), rest.join(" ").trim().to_owned()));
+                }
+                _ => facts.extend(fact(record.text)),
+            }
+        }
+        facts
+    }
+}
+
+/// `key: value`, `key = value` or a remark without key.
+fn fact(line: &str) -> Option<(String, String)> {
+    let line = line.trim().trim_matches('"').trim();
+    if line.is_empty() {
+        return None;
+    }
+    let (key, value) = line.split_once(':').or_else(|| line.split_once('=')).unwrap_or(("", line));
+    Some((key.trim().to_owned(), value.trim_matches([' ', '\t', ',', ';', '"']).to_owned()))
+}
+
+/// What a fact above the table states for all of its spectra.
+fn stated(metadata: &[(String, String)]) -> (Option<Quantity>, Option<SpectralUnit>) {
+    let value = |keys: &[&str]| {
+        metadata.iter().find(|(key, _)| keys.contains(&key.to_lowercase().as_str())).map(|(_, value)| value.as_str())
+    };
+    let unit = match value(&["unit", "units", "value unit", "spectral unit"]).map(header::unit) {
+        Some(UnitText::Unit(unit)) => Some(unit),
+        _ => None,
+    };
+    let quantity = value(&["quantity", "spectral quantity"]).and_then(|q| q.parse().ok());
+    (quantity, unit)
+}
+
+/// Reads the heading of a table of rows from the beginning of its text; `None` for a table of columns.
+pub(super) fn head(text: &str, options: &ReadOptions) -> Result<Option<Head>, Error> {
+    let table = Table::new(text, options)?;
+    let Some(heading) = layout::rows(&table.records, table.dialect, options)? else { return Ok(None) };
+    Ok(Some(table.head(heading, options)?))
+}
+
+impl Table<'_> {
+    fn head(&self, heading: layout::RowHeading, options: &ReadOptions) -> Result<Head, Error> {
+        let mut findings = Vec::new();
+        let metadata = self.metadata(heading.index, [None, None]);
+        let record = self.records[heading.index];
+        let mut table = RowTable::new(heading, &record, self.dialect, options, &mut findings)?;
+        let (quantity, unit) = stated(&metadata);
+        table.quantity = table.quantity.or(quantity);
+        table.unit = table.unit.or(unit);
+        Ok(Head { table, metadata, findings, line: record.line + record.text.matches('\n').count() as u64 })
+    }
+}
+
+/// Reads a whole table.
+pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<SpectrumFile>, Error> {
+    let table = Table::new(text, options)?;
+    match layout::rows(&table.records, table.dialect, options)? {
+        Some(heading) => read_rows(&table, heading, options),
+        None => read_columns(&table, options),
+    }
+}
+
+fn read_rows(
+    table: &Table<'_>,
+    heading: layout::RowHeading,
+    options: &ReadOptions,
+) -> Result<Checked<SpectrumFile>, Error> {
+    let first = heading.index + 1;
+    let Head { table: rows, metadata, mut findings, .. } = table.head(heading, options)?;
+    let mut entries = Vec::with_capacity(table.records.len() - first);
+    let mut negatives = Negatives::default();
+    for record in &table.records[first..] {
+        let row = rows.read(*record)?;
+        let location = Location::line(row.line);
+        negatives.add(&row.values, || location.clone().of_item(&row.name));
+        let spectrum = Spectrum::density(rows.grid.clone(), row.values).map_err(|e| Error::new(location.clone(), e))?;
+        entries.push(Entry {
+            name: row.name,
+            spectrum,
+            quantity: rows.quantity,
+            unit: rows.unit.clone(),
+            printed: Vec::new(),
+            metadata: rows.facts(*record),
+            location,
+        });
+    }
+    if entries.is_empty() {
+        let expected = "rows of values below the heading of wavelengths";
+        return Err(Error::at(table.records[first - 1].line, 1, ErrorKind::NoSpectrum { expected }));
+    }
+    findings.extend(negatives.finding());
+    Ok(Checked { value: SpectrumFile { format: Format::Delimited, entries, metadata }, findings })
+}
+
+fn read_columns(table: &Table<'_>, options: &ReadOptions) -> Result<Checked<SpectrumFile>, Error> {
+    let mut findings = Vec::new();
+    // A comment right above the first record may be the heading of a table without another.
+    let comment = table.lines.comments.iter().rev().find(|(_, before)| *before == 0).map(|(record, _)| *record);
+    let (mut entries, head) = columns::read(&table.records, table.dialect, comment, options, &mut findings)?;
+    let metadata = table.metadata(head.data, [head.heading, head.units]);
+    let (quantity, unit) = stated(&metadata);
+    // Figures above a table of several spectra belong to nobody knows which.
+    let alone = entries.len() == 1;
+    for entry in &mut entries {
+        entry.quantity = entry.quantity.or(quantity);
+        entry.unit = entry.unit.take().or_else(|| unit.clone());
+        if alone {
+            entry.printed = metadata.iter().filter_map(|(label, text)| printed::known_figure(label, text)).collect();
+        }
+        let mut negatives = Negatives::default();
+        negatives.add(entry.spectrum.values(), || entry.location.clone().of_item(&entry.name));
+        findings.extend(negatives.finding());
+    }
+    Ok(Checked { value: SpectrumFile { format: Format::Delimited, entries, metadata }, findings })
+}
