@@ -186,8 +186,8 @@ BLUE_LIGHT = {
 
 # S(lambda), ICNIRP 2004 Table 1 (Health Physics 87, 171-186), the values of IEC 62471:2006 Table 4.1. Three public
 # transcriptions agree on every value: EN 62471 in isetcam's s_safetyHazardFunctions.m (from 200 nm), ICNIRP 2004 in a
-# web page's hazard-weighting.ts, and, at these wavelengths, a 1 nm list with the numbers of Directive 2006/25/EC,
-# Annex I, Table 1.2.
+# web page's hazard-weighting.ts, and, at these wavelengths, an unlabelled 1 nm list in an app, apparently that of
+# Directive 2006/25/EC, Annex I, Table 1.2.
 ACTINIC_UV = {
     180: "0.012", 190: "0.019", 200: "0.030", 205: "0.051", 210: "0.075", 215: "0.095", 220: "0.120", 225: "0.150",
     230: "0.190", 235: "0.240", 240: "0.300", 245: "0.360", 250: "0.430", 254: "0.500", 255: "0.520", 260: "0.650",
@@ -357,7 +357,7 @@ def tables() -> list[Table]:
     v = of_colour(lefs["cie_2_1924"])
     agree("V 1924 against ybar 1931", v, column(xyz31, 1))
     out.append(Table(
-        name="cie-1924-v", aliases=["v", "photopic"], file="cie/v_1924.csv",
+        name="cie-1924-v", aliases=["photopic"], file="cie/v_1924.csv",
         title="CIE spectral luminous efficiency for photopic vision, V(lambda)",
         standard="CIE 018:2019 Table 1; ISO/CIE 11664-1:2019", doi="10.25039/CIE.DS.dktna2s3",
         origin=f"{COLOUR}: colorimetry.SDS_LEFS['CIE 1924 Photopic Standard Observer']",
@@ -373,7 +373,7 @@ def tables() -> list[Table]:
     scotopic = of_colour(lefs["cie_1951"])
     agree("V' against luxpy's 5 nm", scotopic, column(of_luxpy("data/cmfs/ciexyz_1951_20_scotopic.dat"), 1))
     out.append(Table(
-        name="cie-1951-v-prime", aliases=["v-prime", "scotopic"], file="cie/v_prime_1951.csv",
+        name="cie-1951-v-prime", aliases=["scotopic"], file="cie/v_prime_1951.csv",
         title="CIE spectral luminous efficiency for scotopic vision, V'(lambda)",
         standard="CIE 018:2019 Table 2", doi="10.25039/CIE.DS.gr6w4b5g",
         origin=f"{COLOUR}: colorimetry.SDS_LEFS['CIE 1951 Scotopic Standard Observer']",
@@ -419,7 +419,7 @@ def tables() -> list[Table]:
     v10 = of_colour(lefs["cie_10_1964"])
     agree("V10 against ybar10", v10, column(xyz64, 1))
     out.append(Table(
-        name="cie-1964-v10", aliases=["v10"], file="cie/v10_1964.csv",
+        name="cie-1964-v10", file="cie/v10_1964.csv",
         title="CIE spectral luminous efficiency for 10-degree photopic vision, V10(lambda)",
         standard="CIE 018:2019 Table 5; CIE 165:2005", doi="10.25039/CIE.DS.bfn2eqci",
         origin=f"{COLOUR}: colorimetry.SDS_LEFS['CIE 1964 Photopic 10 Degree Standard Observer']",
@@ -453,7 +453,7 @@ def tables() -> list[Table]:
 
     agree("1931", xyz31, of_colour(cmfs["cie_2_1931"]), within=5.001e-13)
     out.append(Table(
-        name="cie-1931-2deg", aliases=["cie-1931", "2deg"], file="cie/xyz_1931_2deg.csv",
+        name="cie-1931-2deg", aliases=["cie-1931"], file="cie/xyz_1931_2deg.csv",
         title="Colour-matching functions of the CIE 1931 standard colorimetric observer",
         standard="CIE 018:2019 Table 6; ISO/CIE 11664-1:2019 Table 1", doi="10.25039/CIE.DS.xvudnb9b",
         origin=f"{LUXPY}: data/cmfs/ciexyz_1931_2.dat",
@@ -469,7 +469,7 @@ def tables() -> list[Table]:
                Spot(445, "z_bar", "1.78260", "ISO/CIE 11664-1:2019")],
         note="A copy in wide use (pbrt until April 2026, and others) has y_bar(547) = 0.9874812, two digits exchanged; 0.9874182 is right."))
     out.append(Table(
-        name="cie-1964-10deg", aliases=["cie-1964", "10deg"], file="cie/xyz_1964_10deg.csv",
+        name="cie-1964-10deg", aliases=["cie-1964"], file="cie/xyz_1964_10deg.csv",
         title="Colour-matching functions of the CIE 1964 standard colorimetric observer",
         standard="ISO/CIE 11664-1:2019 Table 2", doi="10.25039/CIE.DS.sqksu2n5",
         origin=f"{COLOUR}: colorimetry.MSDS_CMFS['CIE 1964 10 Degree Standard Observer']",
@@ -514,7 +514,7 @@ def tables() -> list[Table]:
         made = {w: [Decimal(sum(m * float(x) for m, x in zip(row, r, strict=True))) for row in to_xyz[n]] for w, r in lms.items()}
         agree(f"cone fundamentals {n} degrees by the matrix", made, xyz15[n], within=2e-6)
         out.append(Table(
-            name=f"stockman-sharpe-{n}deg", aliases=[f"lms-{n}deg", f"cie-2006-{n}deg"], file=f"cvrl/lms_stockman_sharpe_{n}deg.csv",
+            name=f"stockman-sharpe-{n}deg", aliases=[f"lms-{n}deg"], file=f"cvrl/lms_stockman_sharpe_{n}deg.csv",
             title=f"Stockman and Sharpe cone fundamentals, {n}-degree field, in terms of energy",
             standard=f"CIE 170-1:2006 Table {table}", doi=doi, reference="Stockman and Sharpe 2000, Vision Research 40, 1711-1737",
             origin=f"{COLOUR}: colorimetry.MSDS_CMFS['Stockman & Sharpe {n} Degree Cone Fundamentals']",
@@ -534,7 +534,7 @@ def tables() -> list[Table]:
     agree("A formula against colour", a, of_colour(lamps["A"]))
     agree("A formula against luxpy", a, of_luxpy("data/spds/CIE_A.csv"))
     out.append(Table(
-        name="cie-illuminant-a", aliases=["illuminant-a", "a"], file="cie/illuminant_a.csv",
+        name="cie-illuminant-a", aliases=["illuminant-a"], file="cie/illuminant_a.csv",
         title="CIE standard illuminant A, relative spectral distribution",
         standard="ISO/CIE 11664-2:2022 Table A.1", doi="10.25039/CIE.DS.8jsxjrsn",
         origin="ISO/CIE 11664-2:2022 equation 1 (2848 K with c2 = 1.435e-2 m K), rounded to six significant digits",
@@ -616,7 +616,7 @@ def tables() -> list[Table]:
     b = of_colour(lamps["B"])
     agree("B", b, of_luxpy("data/spds/CIE_B.csv"))
     out.append(Table(
-        name="cie-illuminant-b", aliases=["illuminant-b", "b"], file="cie/illuminant_b.csv",
+        name="cie-illuminant-b", aliases=["illuminant-b"], file="cie/illuminant_b.csv",
         title="CIE illuminant B (withdrawn), relative spectral distribution",
         standard="CIE 015:2004, withdrawn from later editions", reference="Wyszecki and Stiles 1982, Color Science, Table II(3.3.4)",
         origin=f"{COLOUR}: colorimetry.SDS_ILLUMINANTS['B']", checked=f"equal to {LUXPY} data/spds/CIE_B.csv from 360 nm",
@@ -791,7 +791,7 @@ def tables() -> list[Table]:
         standard="ICNIRP 2004 Table 1; IEC 62471:2006 Table 4.1",
         reference="ICNIRP 2004, Guidelines on limits of exposure to ultraviolet radiation of wavelengths between 180 nm and 400 nm, Health Physics 87, 171-186",
         origin="the 56 values of ICNIRP 2004 Table 1; between them straight lines in ln S, six significant digits",
-        checked="three public transcriptions of the 56 values agree; a 1 nm list with the numbers of Directive 2006/25/EC Table 1.2 agrees to "
+        checked="three public transcriptions of the 56 values agree; a public 1 nm list (apparently Directive 2006/25/EC, Table 1.2) agrees to "
                 "its digits but for 221-224, 226-229 and 231-234 nm, where it is up to 0.7 % higher; ICNIRP's equations 2a to 2c, which are approximate, within 33 %",
         licence=FACTS, rows=uv, columns=[Column("S", "1", "actinic ultraviolet hazard weight")],
         interpolation="log-linear",

@@ -432,7 +432,7 @@ const LMS: &[&str] = &["l_bar", "m_bar", "s_bar"];
 #[rustfmt::skip]
 const OTHERS: &[Other] = &[
     // Known defect: extrapolated below 380 nm along the first straight line, to 0 at 360 nm; the standard has 0.01. Ends in zeros above 700 nm.
-    Other { file: "blue_light_hazard_B.csv", table: "icnirp-blue-light-hazard", columns: &["B"], within: 1e-15, except: |nm| nm < 380.0 || nm > 700.0 },
+    Other { file: "blue_light_hazard_B.csv", table: "icnirp-blue-light-hazard", columns: &["B"], within: 1e-15, except: |nm| !(380.0..=700.0).contains(&nm) },
     Other { file: "cfi_ces99_1nm.csv", table: "ies-ces99", columns: &[], within: 0.0, except: ALL },
     Other { file: "cfi_ces99_5nm.csv", table: "ies-ces99", columns: &[], within: 0.0, except: ALL },
     Other { file: "cie_D65_1nm.csv", table: "cie-illuminant-d65", columns: &["D65"], within: 0.0, except: ALL },

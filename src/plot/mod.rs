@@ -1,0 +1,143 @@
+//! Drawings: spectra, chromaticity diagrams and colour vector graphics as SVG or PNG.
+//!
+//! Plain numbers in, bytes of a file out. Nothing is computed here that a report would print: key figures, loci,
+//! colours of wavelengths and luminous efficiency all come from the caller, and this module imports no other.
+//!
+//! ```
+//! use photopic::plot::{Curve, Format, Panel, SpectrumPanel, draw};
+//!
+//! let wavelengths_nm: Vec<f64> = (380..=780).step_by(5).map(f64::from).collect();
+//! let values = wavelengths_nm.iter().map(|w| (-((w - 550.0) / 60.0).powi(2)).exp()).collect();
+//! let panel = SpectrumPanel {
+//!     title: "a green light".into(),
+//!     curves: vec![Curve::density("sample 1", wavelengths_nm, values)],
+//!     value_label: "spectral irradiance [W/(m²·nm)]".into(),
+//!     figures: vec!["500 lx".into()],
+//!     ..SpectrumPanel::default()
+//! };
+//! let svg = draw(&[Panel::Spectrum(panel)], None, Format::Svg)?;
+//! assert!(String::from_utf8(svg).is_ok_and(|text| text.contains("a green light")));
+//! # Ok::<(), photopic::plot::Error>(())
+//! ```
+//!
+//! A drawing is first laid out on a sheet of about a thousand pixels and then written at the size asked for: twice the
+//! size gives the same drawing twice as sharp. The typeface is embedded, in the program and in every SVG file, so that
+//! a drawing looks the same on a machine without fonts. The same input gives the same bytes.
+//!
+//! plotters draws; its charts do not (they round to whole pixels, and know neither a second unit on one
+//! axis, nor equal scales, nor labels that avoid each other).
+
+mod axis;
+mod background;
+mod chromaticity;
+mod clip;
+mod colour_vector;
+mod font;
+mod horseshoe;
+mod inset;
+mod labels;
+mod layout;
+mod png;
+mod sheet;
+mod spectrum;
+mod spectrum_curves;
+mod svg;
+
+pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
+pub use colour_vector::ColourVectorPanel;
+pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
+
+/// The kind of file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// Scalable Vector Graphics, with the typeface embedded; text stays text.
+    Svg,
+    /// Portable Network Graphics, 8-bit sRGB.
+    Png,
+}
+
+/// One drawing, alone or as a part of a picture.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Panel {
+    /// Spectral curves or lines.
+    Spectrum(SpectrumPanel),
+    /// A chromaticity diagram with points.
+    Chromaticity(ChromaticityPanel),
+    /// A colour vector graphic after ANSI/IES TM-30.
+    ColourVector(Box<ColourVectorPanel>),
+}
+
+impl From<SpectrumPanel> for Panel {
+    fn from(panel: SpectrumPanel) -> Self {
+        Self::Spectrum(panel)
+    }
+}
+
+impl From<ChromaticityPanel> for Panel {
+    fn from(panel: ChromaticityPanel) -> Self {
+        Self::Chromaticity(panel)
+    }
+}
+
+impl From<ColourVectorPanel> for Panel {
+    fn from(panel: ColourVectorPanel) -> Self {
+        Self::ColourVector(Box::new(panel))
+    }
+}
+
+/// Why there is no drawing.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// No panel was given.
+    #[error("there is nothing to draw: no panel was given")]
+    Empty,
+    /// The size asked for is too small to read or too large to hold.
+    #[error("a picture of {width} × {height} pixels cannot be drawn: each side must be {least} to {most} pixels", least = SIDES.0, most = SIDES.1)]
+    Size {
+        /// Width asked for, in pixels.
+        width: u32,
+        /// Height asked for, in pixels.
+        height: u32,
+    },
+    /// The embedded typeface could not be read.
+    #[error("the embedded typeface could not be read")]
+    Font,
+    /// The drawing library failed.
+    #[error("the drawing could not be made: {0}")]
+    Drawing(String),
+    /// The PNG could not be encoded.
+    #[error("the PNG could not be encoded")]
+    Encoding(#[from] image::ImageError),
+}
+
+/// Smallest and largest width or height of a picture in pixels.
+pub const SIDES: (u32, u32) = (240, 8192);
+
+/// Draw one panel, or several as one picture: spectra above each other over the full width, the others side by side
+/// below.
+///
+/// `size` is width and height in pixels; without it a spectrum gets 1000 × 600, another single panel 800 × 800, and
+/// spectrum, chromaticity diagram and colour vector graphic together 1200 × 900. Larger sizes enlarge the drawing.
+///
+/// # Errors
+///
+/// [`Error::Empty`] without panels, [`Error::Size`] for sides outside [`SIDES`]; the others do not occur in a sound
+/// build.
+pub fn draw(panels: &[Panel], size: Option<(u32, u32)>, format: Format) -> Result<Vec<u8>, Error> {
+    if panels.is_empty() {
+        return Err(Error::Empty);
+    }
+    let (width, height) = size.unwrap_or_else(|| layout::default_size(panels));
+    let allowed = SIDES.0..=SIDES.1;
+    if !allowed.contains(&width) || !allowed.contains(&height) {
+        return Err(Error::Size { width, height });
+    }
+    let sheet = layout::compose(panels, (width, height));
+    match format {
+        Format::Svg => svg::write(&sheet, (width, height)),
+        Format::Png => png::write(&sheet, (width, height)),
+    }
+}

@@ -1,0 +1,329 @@
+//! A conversion as a JSON object, and the settings that stand in its envelope.
+
+use serde_json::{Map, Value, json};
+
+use crate::colorimetry::rgb::SPACES;
+use crate::colorimetry::tm30::Bin;
+use crate::conversion::{AbsoluteFigures, Conversion, Settings, XyzScale};
+use crate::photometry::photon::Photons;
+use crate::spectrum::Quantity;
+use crate::spectrum::integrate::ErrorBound;
+
+/// Keys of the radiometric, the luminous and the photon figures of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Keys {
+    /// `irradiance_w_per_m2` ….
+    pub radiometric: &'static str,
+    /// `illuminance_lx` ….
+    pub luminous: &'static str,
+    /// `total_umol_per_m2_s` ….
+    pub photons_total: &'static str,
+    /// `total_photons_per_m2_s` ….
+    pub photons_count: &'static str,
+    /// `ppfd_umol_per_m2_s` ….
+    pub photons_par: &'static str,
+}
+
+/// The keys of an absolute quantity; `None` for relative spectra.
+#[must_use]
+pub fn keys(quantity: Quantity) -> Option<Keys> {
+    let of = |radiometric, luminous, photons_total, photons_count, photons_par| {
+        Some(Keys { radiometric, luminous, photons_total, photons_count, photons_par })
+    };
+    match quantity {
+        Quantity::Flux => {
+            of("flux_w", "luminous_flux_lm", "total_umol_per_s", "total_photons_per_s", "ppf_umol_per_s")
+        }
+        Quantity::Intensity => of(
+            "intensity_w_per_sr",
+            "luminous_intensity_cd",
+            "total_umol_per_s_sr",
+            "total_photons_per_s_sr",
+            "par_umol_per_s_sr",
+        ),
+        Quantity::Irradiance => of(
+            "irradiance_w_per_m2",
+            "illuminance_lx",
+            "total_umol_per_m2_s",
+            "total_photons_per_m2_s",
+            "ppfd_umol_per_m2_s",
+        ),
+        Quantity::Radiance => of(
+            "radiance_w_per_m2_sr",
+            "luminance_cd_per_m2",
+            "total_umol_per_m2_s_sr",
+            "total_photons_per_m2_s_sr",
+            "par_umol_per_m2_s_sr",
+        ),
+        Quantity::Exitance => of(
+            "exitance_w_per_m2",
+            "luminous_exitance_lm_per_m2",
+            "exitance_total_umol_per_m2_s",
+            "exitance_total_photons_per_m2_s",
+            "exitance_par_umol_per_m2_s",
+        ),
+        Quantity::Energy => of("energy_j", "luminous_energy_lm_s", "total_umol", "total_photons", "par_umol"),
+        Quantity::Exposure => of(
+            "exposure_j_per_m2",
+            "luminous_exposure_lx_s",
+            "total_umol_per_m2",
+            "total_photons_per_m2",
+            "par_umol_per_m2",
+        ),
+        Quantity::Relative => None,
+    }
+}
+
+/// A number, or null where there is none.
+fn number(value: Option<f64>) -> Value {
+    value.map_or(Value::Null, Value::from)
+}
+
+fn pair(value: Option<[f64; 2]>) -> Value {
+    value.map_or(Value::Null, |v| json!(v))
+}
+
+/// The settings of a run as the envelope shows them.
+#[must_use]
+pub fn settings(settings: &Settings) -> Value {
+    let contract = &settings.contract;
+    let mut out = Map::new();
+    out.insert("rule".into(), contract.rule.map_or_else(|| json!("by grid"), |r| json!(r.word())));
+    if let Some((low, high)) = contract.range_nm {
+        out.insert("range_nm".into(), json!([low, high]));
+    }
+    out.insert("resampling".into(), resampling(settings));
+    out.insert("k_m_lm_per_w".into(), settings.efficacy.k_m.into());
+    out.insert("k_m_scotopic_lm_per_w".into(), settings.efficacy.k_m_scotopic.into());
+    out.insert("luminous_efficiency".into(), json!(settings.efficiency));
+    out.insert("observer".into(), json!(settings.observer));
+    out.insert("second_radiation_constant_m_k".into(), settings.c2.metre_kelvin().into());
+    out.insert("cct_method".into(), json!(settings.cct_method));
+    out.insert("dominant_wavelength_white_xy".into(), json!(settings.dominant_white_xy));
+    out.insert("chromatic_adaptation".into(), json!(settings.adaptation));
+    out.insert("rgb_white_xyz".into(), settings.rgb_white.map_or_else(|| json!("of each space"), |w| json!(w)));
+    if let Some(luminance) = settings.mesopic_adaptation {
+        out.insert("mesopic_adaptation_cd_per_m2".into(), luminance.into());
+    }
+    if !settings.geometry.is_empty() {
+        out.insert("geometry".into(), json!(settings.geometry));
+    }
+    if let Some(level) = &settings.level {
+        out.insert("scale_to".into(), json!(level.to_string()));
+    }
+    out.into()
+}
+
+fn resampling(settings: &Settings) -> Value {
+    settings.resampling.map_or_else(|| json!("none"), |r| {
+        let range = r.range_nm.map_or_else(|| json!("own"), |(a, b)| json!([a, b]));
+        json!({"step_nm": r.step_nm, "range_nm": range, "interpolation": r.interpolation})
+    })
+}
+
+/// The object of one conversion in `results[]`.
+#[must_use]
+pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
+    let groups = settings.groups;
+    let mut out = Map::new();
+    let mut set = |key: &str, value: Value| out.insert(key.to_owned(), value);
+    set("name", c.name.clone().into());
+    set("quantity", json!(c.quantity));
+    if !c.absolute.is_empty() {
+        set("radiometric", figures(c, |k| k.radiometric, |f| Some(f.radiometric)));
+        set("photopic", figures(c, |k| k.luminous, |f| Some(f.photopic)));
+        set("scotopic", figures(c, |k| k.luminous, |f| Some(f.scotopic)));
+        let relations: Map<String, Value> = (c.absolute.iter())
+            .filter(|f| !f.relations.is_empty())
+            .map(|f| (f.quantity.word().to_owned(), json!(f.relations)))
+            .collect();
+        if !relations.is_empty() {
+            set("derived_by", relations.into());
+        }
+    }
+    if settings.mesopic_adaptation.is_some() {
+        set("mesopic", mesopic(c));
+    }
+    set("luminous_efficacy_of_radiation_lm_per_w", number(c.efficacy_lm_per_w));
+    set("scotopic_photopic_ratio", number(c.scotopic_photopic_ratio));
+    set("xyz", c.xyz.map_or(Value::Null, |v| json!(v)));
+    set("xyz_scale", match c.xyz_scale {
+        XyzScale::Absolute => "K_m times the integrals",
+        XyzScale::Hundred => "Y = 100",
+    }
+    .into());
+    set("chromaticity_xy", pair(c.xy));
+    set("chromaticity_uv_prime", pair(c.uv_prime));
+    if groups.colour {
+        set("cct_k", number(c.cct.map(|v| v.kelvin)));
+        set("duv", number(c.cct.map(|v| v.duv)));
+        set("dominant_wavelength_nm", number(c.dominant.map(|v| v.wavelength_nm)));
+        set("excitation_purity", number(c.dominant.map(|v| v.excitation_purity)));
+    }
+    if groups.shape {
+        set("peak_wavelength_nm", number(c.peak_wavelength_nm));
+        set("centroid_wavelength_nm", number(c.centroid_wavelength_nm));
+        if c.integration.rule != crate::spectrum::integrate::Rule::Lines {
+            set("fwhm_nm", number(c.fwhm_nm));
+        }
+    }
+    if groups.cri {
+        set("cri_ra", number(c.cri.map(|v| v.ra)));
+        set("cri_r", c.cri.map_or(Value::Null, |v| json!(v.r)));
+    }
+    if groups.tm30 {
+        set("tm30_rf", number(c.tm30.as_ref().map(|v| v.rf)));
+        set("tm30_rg", number(c.tm30.as_ref().and_then(|v| v.rg)));
+        set("tm30_bins", c.tm30.as_ref().map_or(Value::Null, |v| v.bins.iter().map(|b| b.as_ref().map(bin)).collect::<Vec<_>>().into()));
+    }
+    if groups.alpha_opic {
+        set("alpha_opic", alpha_opic(c));
+    }
+    if !c.hazard.is_empty() {
+        set("hazard", hazard(c));
+    }
+    if let Some(photons) = &c.photons {
+        set("photon", photon(c, photons));
+    }
+    if groups.rgb {
+        set("rgb", rgb(c, settings));
+    }
+    set("integration", integration(c, settings));
+    out
+}
+
+fn figures(
+    c: &Conversion,
+    key: impl Fn(&Keys) -> &'static str,
+    value: impl Fn(&AbsoluteFigures) -> Option<f64>,
+) -> Value {
+    let all = c.absolute.iter().filter_map(|f| Some((key(&keys(f.quantity)?).to_owned(), number(value(f)))));
+    all.collect::<Map<String, Value>>().into()
+}
+
+fn mesopic(c: &Conversion) -> Value {
+    let Some(state) = &c.mesopic else { return Value::Null };
+    let mut out = Map::new();
+    out.insert("adaptation_luminance_cd_per_m2".into(), state.adaptation_luminance.into());
+    out.insert("adaptation_mesopic_luminance_cd_per_m2".into(), state.adaptation.luminance_mesopic.into());
+    out.insert("m".into(), state.adaptation.m.into());
+    if let Value::Object(figures) = figures(c, |k| k.luminous, |f| f.mesopic) {
+        out.extend(figures);
+    }
+    out.into()
+}
+
+fn bin(b: &Bin) -> Value {
+    json!({
+        "reference": b.reference,
+        "test": b.test,
+        "chroma_shift": b.chroma_shift,
+        "hue_shift_rad": b.hue_shift,
+        "fidelity": b.fidelity,
+    })
+}
+
+/// The equivalent daylight quantity has a name where the standard gives it one: EDI for irradiance, EDL for radiance.
+fn alpha_opic(c: &Conversion) -> Value {
+    let mut out = Map::new();
+    for a in &c.alpha_opic {
+        let mut one = Map::new();
+        one.insert("der".into(), number(a.der));
+        one.insert("efficacy_w_per_lm".into(), number(a.efficacy_w_per_lm));
+        for f in &c.absolute {
+            let (radiometric, equivalent) = match f.quantity {
+                Quantity::Irradiance => ("irradiance_w_per_m2", "edi_lx"),
+                Quantity::Radiance => ("radiance_w_per_m2_sr", "edl_cd_per_m2"),
+                _ => continue,
+            };
+            one.insert(equivalent.into(), (f.factor * a.equivalent_daylight).into());
+            one.insert(radiometric.into(), (f.factor * a.radiometric).into());
+        }
+        out.insert(a.receptor.into(), one.into());
+    }
+    out.into()
+}
+
+fn hazard(c: &Conversion) -> Value {
+    let mut out = Map::new();
+    for h in &c.hazard {
+        let mut one = Map::new();
+        for f in &c.absolute {
+            if let Some(keys) = keys(f.quantity) {
+                one.insert(keys.radiometric.into(), (f.factor * h.weighted).into());
+            }
+        }
+        let luminous = c.absolute.first().map(|f| f.photopic).filter(|p| *p > 0.0);
+        if let Some(luminous) = luminous {
+            one.insert("efficacy_w_per_lm".into(), number(Some(h.weighted / luminous).filter(|v| v.is_finite())));
+        }
+        if let Some((low, high)) = h.covered_nm {
+            one.insert("covered_nm".into(), json!([low, high]));
+        }
+        out.insert(h.key.into(), one.into());
+    }
+    out.into()
+}
+
+fn photon(c: &Conversion, p: &Photons) -> Value {
+    let mut out = Map::new();
+    for f in &c.absolute {
+        let Some(keys) = keys(f.quantity) else { continue };
+        out.insert(keys.photons_total.into(), (f.factor * p.total_umol).into());
+        out.insert(keys.photons_count.into(), (f.factor * p.total_count).into());
+        out.insert(keys.photons_par.into(), (f.factor * p.par_umol).into());
+    }
+    out.insert("umol_per_j".into(), number(p.umol_per_j));
+    out.insert("par_umol_per_par_j".into(), number(p.par_umol_per_par_j));
+    out.into()
+}
+
+fn rgb(c: &Conversion, settings: &Settings) -> Value {
+    if c.rgb.is_empty() {
+        return Value::Null;
+    }
+    let mut out = Map::new();
+    for f in &c.rgb {
+        out.insert(f.key.into(), json!(f.colour.encoded));
+    }
+    for f in &c.rgb {
+        out.insert(format!("{}_linear", f.key), json!(f.colour.linear));
+    }
+    let clipped: Map<String, Value> = (c.rgb.iter())
+        .filter(|f| f.colour.out_of_gamut)
+        .map(|f| (f.key.to_owned(), f.colour.clipped.into()))
+        .collect();
+    let whites: Map<String, Value> = SPACES.iter().map(|s| (s.key.to_owned(), s.white_name.into())).collect();
+    out.insert("clipped".into(), clipped.into());
+    out.insert("white".into(), whites.into());
+    let adaptation = if settings.rgb_white.is_some() { json!(settings.adaptation) } else { json!("none") };
+    out.insert("adaptation".into(), adaptation);
+    out.into()
+}
+
+fn integration(c: &Conversion, settings: &Settings) -> Value {
+    let i = &c.integration;
+    let ErrorBound { truncation_relative, step_relative } = i.error_bound;
+    let total = truncation_relative.zip(step_relative).map(|(a, b)| a + b);
+    let extrapolation = settings.resampling.map_or_else(|| json!("none"), |r| json!(r.extrapolation));
+    json!({
+        "rule": i.rule.word(),
+        "photon_rule": i.photon_rule.word(),
+        "range_nm": [i.range_nm.0, i.range_nm.1],
+        "step_nm": i.step_nm,
+        "samples": i.samples,
+        "resampling": resampling(settings),
+        "extrapolation": extrapolation,
+        "k_m_lm_per_w": settings.efficacy.k_m,
+        "k_m_scotopic_lm_per_w": settings.efficacy.k_m_scotopic,
+        "luminous_efficiency": settings.efficiency,
+        "observer": settings.observer,
+        "second_radiation_constant_m_k": settings.c2.metre_kelvin(),
+        "cct_method": settings.cct_method,
+        "error_bound": {
+            "photopic_relative": total,
+            "truncation_relative": truncation_relative,
+            "step_relative": step_relative,
+        },
+    })
+}

@@ -1,0 +1,9 @@
+//! Results as JSON, CSV and text: the only writer of result JSON.
+//!
+//! Keys and their order are those of `docs/json.md`; they end in their unit, a figure that does not apply is absent, one that
+//! could not be determined is `null` beside a finding that says why.
+
+pub mod conversion;
+pub mod csv;
+pub mod envelope;
+pub mod text;

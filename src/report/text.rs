@@ -1,0 +1,224 @@
+//! A conversion for people: aligned lines, what it stands on beneath.
+
+use std::fmt::Write;
+
+use crate::conversion::{AbsoluteFigures, Conversion, Settings};
+use crate::spectrum::integrate::Rule;
+use crate::spectrum::Quantity;
+use crate::units::significant;
+
+/// Width of the labels' column.
+const LABEL: usize = 28;
+/// Significant digits shown; the JSON output has all.
+const DIGITS: usize = 6;
+
+struct Lines(String);
+
+impl Lines {
+    fn line(&mut self, label: &str, value: impl AsRef<str>) {
+        // Padding by characters, not bytes: labels have primes and dots in them. Writing to a string cannot fail.
+        let _ = writeln!(self.0, "  {label:<LABEL$} {}", value.as_ref());
+    }
+
+    fn gap(&mut self) {
+        self.0.push('\n');
+    }
+}
+
+fn show(value: f64) -> String {
+    significant(value, DIGITS)
+}
+
+/// Name of the luminous quantity.
+fn luminous_name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Flux => "luminous flux",
+        Quantity::Intensity => "luminous intensity",
+        Quantity::Irradiance => "illuminance",
+        Quantity::Radiance => "luminance",
+        Quantity::Exitance => "luminous exitance",
+        Quantity::Energy => "luminous energy",
+        Quantity::Exposure => "luminous exposure",
+        Quantity::Relative => "",
+    }
+}
+
+/// Name of the radiometric quantity.
+fn radiometric_name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Flux => "radiant flux",
+        Quantity::Intensity => "radiant intensity",
+        Quantity::Irradiance => "irradiance",
+        Quantity::Radiance => "radiance",
+        Quantity::Exitance => "radiant exitance",
+        Quantity::Energy => "radiant energy",
+        Quantity::Exposure => "radiant exposure",
+        Quantity::Relative => "relative",
+    }
+}
+
+/// The report of one conversion; `heading` names the spectrum.
+#[must_use]
+pub fn conversion(heading: &str, c: &Conversion, settings: &Settings) -> String {
+    let mut out = Lines(String::new());
+    let kind = match c.quantity {
+        Quantity::Relative => "relative spectrum".to_owned(),
+        q => format!("spectral {}", radiometric_name(q)),
+    };
+    let _ = writeln!(out.0, "{heading}: {kind}, {}\n", grid(c));
+    for (i, figures) in c.absolute.iter().enumerate() {
+        absolute(&mut out, figures, i == 0);
+    }
+    if c.absolute.len() > 1 {
+        out.gap();
+    }
+    let efficacy = c.efficacy_lm_per_w.map_or("–".into(), |v| format!("{} lm/W", show(v)));
+    out.line("efficacy of radiation", efficacy);
+    out.line("S/P ratio", c.scotopic_photopic_ratio.map_or("–".into(), show));
+    if let Some(m) = &c.mesopic {
+        let state = format!("m = {}, adapted to {} cd/m² photopic", show(m.adaptation.m), show(m.adaptation_luminance));
+        out.line("mesopic (MES2)", state);
+    }
+    out.gap();
+    colour(&mut out, c, settings);
+    rendition(&mut out, c);
+    biology(&mut out, c);
+    shape(&mut out, c);
+    basis(&mut out, c, settings);
+    out.0
+}
+
+fn grid(c: &Conversion) -> String {
+    let i = &c.integration;
+    let (low, high) = i.range_nm;
+    let samples = if i.samples == 1 { "1 sample".to_owned() } else { format!("{} samples", i.samples) };
+    match (i.rule, i.step_nm) {
+        (Rule::Lines, _) => format!("{samples} taken as lines, {low}–{high} nm"),
+        (_, Some(step)) => format!("{low}–{high} nm by {} nm ({samples})", significant(step, 4).trim_end_matches('0').trim_end_matches('.')),
+        (_, None) => format!("{low}–{high} nm, unequal steps ({samples})"),
+    }
+}
+
+fn absolute(out: &mut Lines, f: &AbsoluteFigures, measured: bool) {
+    let unit = f.quantity.luminous_unit();
+    let how = if measured { String::new() } else { format!("   [{}]", f.relations.join("; ")) };
+    out.line(luminous_name(f.quantity), format!("{} {unit}{how}", show(f.photopic)));
+    if let Some(mesopic) = f.mesopic {
+        out.line(&format!("  mesopic {}", luminous_name(f.quantity)), format!("{} {unit}", show(mesopic)));
+    }
+    if measured {
+        out.line(&format!("  scotopic {}", luminous_name(f.quantity)), format!("{} {unit}", show(f.scotopic)));
+    }
+    out.line(radiometric_name(f.quantity), format!("{} {}", show(f.radiometric), f.quantity.unit()));
+}
+
+fn colour(out: &mut Lines, c: &Conversion, settings: &Settings) {
+    if let Some(xyz) = c.xyz {
+        out.line("X, Y, Z", xyz.map(show).join(", "));
+    }
+    if let Some([x, y]) = c.xy {
+        out.line("chromaticity x, y", format!("{x:.5}, {y:.5}"));
+    }
+    if let Some([u, v]) = c.uv_prime {
+        out.line("chromaticity u′, v′", format!("{u:.5}, {v:.5}"));
+    }
+    if let Some(cct) = c.cct {
+        // A blackbody's distance from its own locus is rounding; −0.00000 would look like a statement.
+        let duv = if cct.duv.abs() < 5e-6 { 0.0 } else { cct.duv };
+        out.line("CCT, Duv", format!("{:.1} K, {duv:+.5}", cct.kelvin));
+    } else if settings.groups.colour {
+        out.line("CCT, Duv", "–");
+    }
+    if let Some(d) = c.dominant {
+        let (label, wavelength) = if d.wavelength_nm < 0.0 {
+            ("complementary wavelength", -d.wavelength_nm)
+        } else {
+            ("dominant wavelength", d.wavelength_nm)
+        };
+        out.line(label, format!("{wavelength:.2} nm, purity {:.2} %", 100.0 * d.excitation_purity));
+    }
+    if let Some(srgb) = c.rgb.first() {
+        let [r, g, b] = srgb.colour.encoded.map(|v| (255.0 * v).round());
+        let note = if srgb.colour.out_of_gamut { " (outside the gamut, cut)" } else { "" };
+        out.line("sRGB of the light", format!("#{:02x}{:02x}{:02x}{note}", r as u8, g as u8, b as u8));
+    }
+}
+
+fn rendition(out: &mut Lines, c: &Conversion) {
+    if c.cri.is_some() || c.tm30.is_some() {
+        out.gap();
+    }
+    if let Some(cri) = c.cri {
+        out.line("CRI Ra, R9", format!("{:.2}, {:.2}", cri.ra, cri.r[8]));
+        out.line("R1 … R14", cri.r.map(|r| format!("{r:.0}")).join(" "));
+    }
+    if let Some(tm30) = &c.tm30 {
+        let rg = tm30.rg.map_or("–".into(), |v| format!("{v:.2}"));
+        out.line("TM-30 Rf, Rg", format!("{:.2}, {rg}", tm30.rf));
+    }
+}
+
+fn biology(out: &mut Lines, c: &Conversion) {
+    let melanopic = c.alpha_opic.iter().find(|a| a.receptor == "melanopic");
+    if melanopic.is_some() || c.photons.is_some() {
+        out.gap();
+    }
+    if let Some(a) = melanopic {
+        let irradiance = c.absolute.iter().find(|f| f.quantity == Quantity::Irradiance);
+        if let Some(f) = irradiance {
+            out.line("melanopic EDI", format!("{} lx", show(f.factor * a.equivalent_daylight)));
+        }
+        out.line("melanopic DER", a.der.map_or("–".into(), show));
+    }
+    if let Some(p) = &c.photons {
+        for f in &c.absolute {
+            match f.quantity {
+                Quantity::Irradiance => out.line("PPFD", format!("{} µmol/(m²·s)", show(f.factor * p.par_umol))),
+                Quantity::Flux => {
+                    out.line("PPF", format!("{} µmol/s", show(f.factor * p.par_umol)));
+                    out.line("photons", format!("{} per second", show(f.factor * p.total_count)));
+                }
+                _ => {}
+            }
+        }
+        out.line("PAR photons per joule", p.umol_per_j.map_or("–".into(), |v| format!("{} µmol/J", show(v))));
+    }
+    for h in &c.hazard {
+        let label = if h.key == "blue_light" { "blue-light weighted B(λ)" } else { "UV-hazard weighted S(λ)" };
+        if let Some(f) = c.absolute.first() {
+            out.line(label, format!("{} {}", show(h.weighted), f.quantity.unit()));
+        }
+    }
+}
+
+fn shape(out: &mut Lines, c: &Conversion) {
+    let Some(peak) = c.peak_wavelength_nm else { return };
+    let mut text = format!("peak {} nm", significant(peak, DIGITS));
+    if let Some(v) = c.centroid_wavelength_nm {
+        let _ = write!(text, ", centroid {v:.2} nm");
+    }
+    if let Some(v) = c.fwhm_nm {
+        let _ = write!(text, ", FWHM {v:.2} nm");
+    }
+    out.line("spectrum", text);
+}
+
+fn basis(out: &mut Lines, c: &Conversion, settings: &Settings) {
+    out.gap();
+    let i = &c.integration;
+    let rule = match i.rule {
+        Rule::Summation => "summation (CIE 15)",
+        Rule::Trapezoid => "trapezoid",
+        Rule::Exact => "exact integral of straight lines",
+        Rule::Lines => "sum over lines",
+    };
+    let resampling = settings.resampling.map_or_else(
+        || "not resampled".to_owned(),
+        |r| format!("resampled to {} nm, {:?}", r.step_nm, r.interpolation).to_lowercase(),
+    );
+    let observer = settings.observer;
+    out.line("obtained by", format!("{rule}, {resampling}, K_m {} lm/W, {}, {observer}", settings.efficacy.k_m, settings.efficiency));
+    let part = |v: Option<f64>| v.map_or("–".into(), |v| format!("{} %", significant(100.0 * v, 2)));
+    let bound = &i.error_bound;
+    out.line("error of the integral", format!("at most {} from the step, {} from the range", part(bound.step_relative), part(bound.truncation_relative)));
+}
