@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![warn(missing_docs)]
 
+pub mod cli;
 pub mod colorimetry;
 pub mod constants;
 pub mod conversion;
@@ -9,6 +10,8 @@ pub mod geometry;
 pub mod illuminant;
 pub mod math;
 pub mod photometry;
+pub mod plot;
+pub mod report;
 pub mod spectrum;
 pub mod tables;
 pub mod units;

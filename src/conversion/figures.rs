@@ -75,19 +75,6 @@ pub struct RgbFigure {
     pub colour: Colour,
 }
 
-/// A figure that the instrument printed, beside ours.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Instrument {
-    /// Our key.
-    pub key: &'static str,
-    /// The instrument's label.
-    pub label: String,
-    /// The instrument's figure.
-    pub printed: f64,
-    /// Half a unit of its last printed digit.
-    pub resolution: f64,
-}
-
 /// All figures of one spectrum. `None` where a figure does not apply, was not asked for, or could not be determined (then a
 /// finding says why).
 #[derive(Debug, Clone, PartialEq)]

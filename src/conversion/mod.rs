@@ -21,7 +21,7 @@ mod evaluate;
 mod figures;
 mod scale;
 
-pub use figures::{AbsoluteFigures, Conversion, Instrument, Integration, Mesopic, RgbFigure, XyzScale};
+pub use figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
 pub use scale::{Level, LevelError};
 
 /// Which groups of figures to calculate. Luminous figures, XYZ and chromaticity always are.

@@ -146,9 +146,6 @@ pub struct Geometry {
     /// Emitting area, m²; for an irradiance without distance, the receiving area.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area_m2: Option<f64>,
-    /// Receiving area, m².
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub receiver_area_m2: Option<f64>,
     /// Solid angle that the light fills evenly, sr.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solid_angle_sr: Option<f64>,
@@ -246,7 +243,6 @@ impl Geometry {
         let any = "a positive finite number";
         positive("a distance", self.distance_m, "m", f64::MAX, any)?;
         positive("an area", self.area_m2, "m²", f64::MAX, any)?;
-        positive("a receiving area", self.receiver_area_m2, "m²", f64::MAX, any)?;
         positive("a time", self.time_s, "s", f64::MAX, any)?;
         positive("a solid angle", self.solid_angle_sr, "sr", 4.0 * PI, "a number above 0 and up to 4π = 12.566 sr")?;
         positive("a cone's half-angle", self.cone_half_angle_rad, "rad", PI, "an angle above 0 and up to 180°")?;
@@ -324,12 +320,6 @@ impl Geometry {
             edge(Irradiance, Exposure, time, "H = E t", "E = H/t");
         }
         edges
-    }
-
-    /// Flux caught by the receiving area per unit of irradiance, m²; `None` without one.
-    #[must_use]
-    pub fn receiving_area_m2(&self) -> Option<f64> {
-        self.receiver_area_m2
     }
 }
 

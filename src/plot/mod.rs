@@ -37,6 +37,7 @@ mod horseshoe;
 mod inset;
 mod labels;
 mod layout;
+pub mod conversion;
 mod png;
 mod sheet;
 mod spectrum;

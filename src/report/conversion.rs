@@ -7,6 +7,7 @@ use crate::colorimetry::tm30::Bin;
 use crate::conversion::{AbsoluteFigures, Conversion, Settings, XyzScale};
 use crate::photometry::photon::Photons;
 use crate::spectrum::Quantity;
+use crate::spectrum::format::Printed;
 use crate::spectrum::integrate::ErrorBound;
 
 /// Keys of the radiometric, the luminous and the photon figures of a quantity.
@@ -326,4 +327,37 @@ fn integration(c: &Conversion, settings: &Settings) -> Value {
             "step_relative": step_relative,
         },
     })
+}
+
+/// What the instrument printed beside our own figures: an object for each one that we have, too.
+///
+/// `difference` is ours less theirs; `within_printed_digits` says whether rounding to the instrument's digits explains it.
+#[must_use]
+pub fn instrument(result: &Map<String, Value>, printed: &[Printed]) -> Vec<Value> {
+    let compare = |p: &Printed| {
+        let ours = super::csv::at(result, p.key)?.as_f64()?;
+        let difference = ours - p.value;
+        let half = half_digit(p);
+        let within = difference.abs() <= half * (1.0 + 1e-9);
+        Some(json!({
+            "key": p.key,
+            "label": p.label,
+            "printed": p.value,
+            "printed_text": p.text,
+            "ours": ours,
+            "difference": difference,
+            "within_printed_digits": within,
+        }))
+    };
+    printed.iter().filter(|p| !p.key.is_empty()).filter_map(compare).collect()
+}
+
+/// Half a unit of the last digit printed, in the unit of the key (a percentage printed as 41.5 is 0.415 there).
+fn half_digit(p: &Printed) -> f64 {
+    let decimals = p.text.split_once('.').map_or(0, |(_, d)| d.chars().take_while(char::is_ascii_digit).count());
+    let scale = match p.text.trim().parse::<f64>() {
+        Ok(text) if text != 0.0 => (p.value / text).abs(),
+        _ => 1.0,
+    };
+    0.5 * scale * 10f64.powi(-i32::try_from(decimals).unwrap_or(0))
 }

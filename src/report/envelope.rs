@@ -46,9 +46,17 @@ impl<W: Write> Envelope<W> {
     /// # Errors
     /// Those of the writer.
     pub fn result(&mut self, result: &Value) -> io::Result<()> {
+        self.result_bytes(&serde_json::to_vec(result)?)
+    }
+
+    /// Writes one result that is JSON already: many are made in parallel and written one after another.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn result_bytes(&mut self, json: &[u8]) -> io::Result<()> {
         self.out.write_all(if self.results == 0 { b"\n" } else { b",\n" })?;
         self.results += 1;
-        Ok(serde_json::to_writer(&mut self.out, result)?)
+        self.out.write_all(json)
     }
 
     /// Keeps a finding for the end of the document.

@@ -222,3 +222,26 @@ fn basis(out: &mut Lines, c: &Conversion, settings: &Settings) {
     let bound = &i.error_bound;
     out.line("error of the integral", format!("at most {} from the step, {} from the range", part(bound.step_relative), part(bound.truncation_relative)));
 }
+
+/// What the instrument printed beside ours, as lines; empty without any.
+#[must_use]
+pub fn instrument(compared: &[serde_json::Value]) -> String {
+    let mut out = Lines(String::new());
+    if compared.is_empty() {
+        return out.0;
+    }
+    out.gap();
+    let _ = writeln!(out.0, "  {:<LABEL$} {:>14} {:>14}   difference", "the instrument printed", "printed", "ours");
+    for c in compared {
+        let text = |key: &str| c[key].as_str().unwrap_or_default().to_owned();
+        let number = |key: &str| c[key].as_f64().unwrap_or(f64::NAN);
+        let difference = if c["within_printed_digits"] == true {
+            "rounding".to_owned()
+        } else {
+            format!("{}{}", if number("difference") > 0.0 { "+" } else { "" }, significant(number("difference"), 3))
+        };
+        let (printed, ours) = (show(number("printed")), show(number("ours")));
+        let _ = writeln!(out.0, "  {:<LABEL$} {printed:>14} {ours:>14}   {difference}", text("label"));
+    }
+    out.0
+}

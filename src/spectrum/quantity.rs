@@ -35,15 +35,8 @@ pub enum Quantity {
 
 impl Quantity {
     /// All absolute quantities, in the order reports use.
-    pub const ABSOLUTE: [Self; 7] = [
-        Self::Flux,
-        Self::Intensity,
-        Self::Irradiance,
-        Self::Radiance,
-        Self::Exitance,
-        Self::Energy,
-        Self::Exposure,
-    ];
+    pub const ABSOLUTE: [Self; 7] =
+        [Self::Flux, Self::Intensity, Self::Irradiance, Self::Radiance, Self::Exitance, Self::Energy, Self::Exposure];
 
     /// The lower-case word used on the command line and in JSON.
     #[must_use]
@@ -109,7 +102,9 @@ pub enum UnitError {
         found: String,
     },
     /// A symbol in the unit is not known.
-    #[error("unknown symbol `{symbol}` in the unit `{found}`; expected one like W/m2/nm, mW/(m²·sr·nm), µW/cm2/nm, W/sr/um or umol/s/m2/nm")]
+    #[error(
+        "unknown symbol `{symbol}` in the unit `{found}`; expected one like W/m2/nm, mW/(m²·sr·nm), µW/cm2/nm, W/sr/um or umol/s/m2/nm"
+    )]
     Symbol {
         /// The whole unit.
         found: String,
@@ -117,7 +112,9 @@ pub enum UnitError {
         symbol: String,
     },
     /// The dimensions are not those of a radiometric quantity.
-    #[error("the unit `{found}` is not one of radiant flux, intensity, irradiance, radiance, energy or exposure (per wavelength or per band)")]
+    #[error(
+        "the unit `{found}` is not one of radiant flux, intensity, irradiance, radiance, energy or exposure (per wavelength or per band)"
+    )]
     Dimension {
         /// The whole unit.
         found: String,
@@ -256,8 +253,8 @@ impl SpectralUnit {
     /// # Errors
     /// [`UnitError::Mismatch`] where the dimensions differ.
     pub fn as_quantity(mut self, quantity: Quantity) -> Result<Self, UnitError> {
-        let alike = self.quantity == quantity
-            || (self.quantity == Quantity::Irradiance && quantity == Quantity::Exitance);
+        let alike =
+            self.quantity == quantity || (self.quantity == Quantity::Irradiance && quantity == Quantity::Exitance);
         if !alike {
             return Err(UnitError::Mismatch { unit: self.text, of: self.quantity, asked: quantity });
         }
@@ -278,6 +275,8 @@ struct Dimensions {
     steradian: i32,
     spectral: i32,
     band: i32,
+    /// A length stands in the numerator, as in `W/m2/cm-1`: a density over wavenumber, which is none over wavelength.
+    wavenumber: bool,
 }
 
 impl FromStr for SpectralUnit {
@@ -303,7 +302,7 @@ impl FromStr for SpectralUnit {
                 rest = after;
             } else {
                 let (token, after) = split_token(rest);
-                let (symbol, exponent) = split_exponent(token);
+                let (symbol, exponent) = split_exponent(token).ok_or_else(|| unknown(token))?;
                 if symbol.is_empty() {
                     // A bare number scales the unit: `W/m2/5nm` is per 5 nm.
                     let number: f64 = token.parse().map_err(|_| unknown(token))?;
@@ -364,11 +363,16 @@ fn split_token(rest: &str) -> (&str, &str) {
     rest.split_at(end)
 }
 
-/// `nm-1` → (`nm`, −1); `m2` → (`m`, 2); `W` → (`W`, 1); a bare number has an empty symbol.
-fn split_exponent(token: &str) -> (&str, i32) {
+/// `nm-1` → (`nm`, −1); `m2` → (`m`, 2); `W` → (`W`, 1); a bare number has an empty symbol. `None` where the exponent is no
+/// number that a unit could have.
+fn split_exponent(token: &str) -> Option<(&str, i32)> {
+    const LARGEST: i32 = 9;
     let start = token.find(|c: char| c.is_ascii_digit() || c == '-').unwrap_or(token.len());
     let (symbol, digits) = token.split_at(start);
-    (symbol, if digits.is_empty() { 1 } else { digits.parse().unwrap_or(1) })
+    if symbol.is_empty() || digits.is_empty() {
+        return Some((symbol, 1));
+    }
+    digits.parse().ok().filter(|e| (-LARGEST..=LARGEST).contains(e)).map(|exponent| (symbol, exponent))
 }
 
 impl Dimensions {
@@ -405,7 +409,10 @@ impl Dimensions {
                 self.factor *= AVOGADRO.powi(exponent);
             }
             "s" => self.second += exponent,
-            "m" => self.metre += exponent,
+            "m" => {
+                self.metre += exponent;
+                self.wavenumber |= exponent > 0;
+            }
             "sr" => self.steradian += exponent,
             _ => self.band += exponent,
         }
@@ -414,6 +421,10 @@ impl Dimensions {
 
     /// The quantity that the exponents stand for; `None` where they stand for none.
     fn finish(mut self, text: &str) -> Option<SpectralUnit> {
+        // Bare numbers may have driven the factor out of range.
+        if self.wavenumber || !self.factor.is_normal() {
+            return None;
+        }
         // W/m³ and W/m are per metre of wavelength.
         if self.metre == -3 || self.metre == -1 {
             self.metre += 1;
@@ -489,7 +500,8 @@ mod tests {
 
     #[test]
     fn every_spelling_of_a_spectral_irradiance_is_the_same_unit() {
-        for text in ["W/m2/nm", "W/(m²·nm)", "W m-2 nm-1", "W·m⁻²·nm⁻¹", "Wm-2nm-1", "W/m^2/nm", "W/m2 nm", "W.m-2.nm-1"]
+        for text in
+            ["W/m2/nm", "W/(m²·nm)", "W m-2 nm-1", "W·m⁻²·nm⁻¹", "Wm-2nm-1", "W/m^2/nm", "W/m2 nm", "W.m-2.nm-1"]
         {
             let u = unit(text);
             assert_eq!((u.quantity, u.per, u.factor), (Quantity::Irradiance, Per::Wavelength, 1.0), "{text}");
@@ -540,9 +552,23 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for text in ["", "lux", "W/m4", "m2", "W/W", "kg", "W/m2/nm/nm", "0W", "/"] {
+        for text in [
+            "",
+            "lux",
+            "W/m4",
+            "m2",
+            "W/W",
+            "kg",
+            "W/m2/nm/nm",
+            "0W",
+            "/",
+            "W/m2/cm-1",
+            "W/(m2 cm-1)",
+            "W/m99999999999",
+        ] {
             assert!(text.parse::<SpectralUnit>().is_err(), "{text}");
         }
+        assert!(format!("W/m-2147483648/{}nm", "9".repeat(400)).parse::<SpectralUnit>().is_err());
         assert!(unit("W/m2/nm").as_quantity(Quantity::Radiance).is_err());
         assert!(unit("W/m2/nm").as_quantity(Quantity::Exitance).is_ok());
     }

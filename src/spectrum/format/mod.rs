@@ -35,20 +35,28 @@ use std::str::FromStr;
 use super::{Quantity, SpectralUnit, Spectrum, WavelengthUnit};
 use crate::finding::{Checked, Location};
 
+mod asdf;
 mod axis;
+mod cgats;
 mod columns;
 mod delimited;
 mod dialect;
 mod error;
 mod field;
 mod header;
+mod instrument;
+mod jcamp;
 mod layout;
 mod number;
+mod oceanview;
 mod printed;
 mod resolve;
 mod rows;
+mod sekonic;
 mod stream;
 mod text;
+mod tm27;
+mod uprtek;
 
 pub use error::{Error, ErrorKind};
 pub use resolve::Scale;
@@ -215,11 +223,27 @@ pub struct ReadOptions {
     pub layout: Option<Layout>,
 }
 
+/// Bytes in which the format is looked for.
+const DETECTION: usize = 64 * 1024;
+
 /// Tells the format of an input from its first bytes; what is no other format is [`Format::Delimited`].
 #[must_use]
 pub fn detect(bytes: &[u8]) -> Format {
-    let _ = bytes;
-    Format::Delimited
+    let head = &bytes[..bytes.len().min(DETECTION)];
+    let head = match text::utf16(head) {
+        Some(encoding) => encoding.decode_with_bom_removal(head).0,
+        None => String::from_utf8_lossy(head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head)),
+    };
+    let head = head.replace("\r\n", "\n").replace('\r', "\n");
+    let told = [
+        (Format::Tm27, tm27::matches(&head)),
+        (Format::Jcamp, jcamp::matches(&head)),
+        (Format::Cgats, cgats::matches(&head)),
+        (Format::OceanView, oceanview::matches(&head)),
+        (Format::Sekonic, sekonic::matches(&head)),
+        (Format::Uprtek, uprtek::matches(&head)),
+    ];
+    told.iter().find(|(_, matches)| *matches).map_or(Format::Delimited, |(format, _)| *format)
 }
 
 /// Reads an input of any format.
@@ -231,12 +255,18 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<Checked<SpectrumFile>
         return Err(Error::whole(ErrorKind::TooLarge { what: "an input", limit: LARGEST_WHOLE }));
     }
     let text::Text { text, finding } = text::decode(bytes)?;
+    if text.trim().is_empty() {
+        return Err(Error::whole(ErrorKind::Empty));
+    }
     let mut file = match options.format.unwrap_or_else(|| detect(bytes)) {
-        Format::Delimited => delimited::read(&text, options)?,
-        format => {
-            return Err(Error::whole(ErrorKind::Unsupported { found: format.to_string(), expected: "csv" }));
-        }
-    };
+        Format::Delimited => delimited::read(&text, options),
+        Format::Tm27 => tm27::read(&text, options),
+        Format::Cgats => cgats::read(&text, options),
+        Format::Jcamp => jcamp::read(&text, options),
+        Format::OceanView => oceanview::read(&text, options),
+        Format::Uprtek => uprtek::read(&text, options),
+        Format::Sekonic => sekonic::read(&text, options),
+    }?;
     file.findings.splice(0..0, finding);
     Ok(file)
 }

@@ -30,7 +30,7 @@ pub struct Scale {
 }
 
 /// The unit in which a quantity is taken where the user names only the quantity.
-fn si_per_nm(quantity: Quantity) -> &'static str {
+pub(super) fn si_per_nm(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Flux => "W/nm",
         Quantity::Intensity => "W/sr/nm",

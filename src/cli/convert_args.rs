@@ -1,0 +1,412 @@
+//! Arguments of `convert`, and the settings they mean.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::measures;
+use crate::colorimetry::adaptation::Transform;
+use crate::colorimetry::{Observer, cct, chromaticity};
+use crate::constants::{K_M, K_M_SCOTOPIC, SecondRadiation};
+use crate::conversion::{Groups, Level, Resampling, Settings};
+use crate::photometry::luminous::{Efficacy, Efficiency};
+use crate::photometry::transfer::{Geometry, Shape};
+use crate::spectrum::format::{Format, Layout, ReadOptions};
+use crate::spectrum::integrate::{Contract, Rule};
+use crate::spectrum::resample::{Extrapolation, Interpolation};
+use crate::spectrum::{Quantity, SpectralUnit, WavelengthUnit};
+
+/// Arguments of `convert`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  photopic convert data/spectra/office-led.csv
+  photopic convert LED-B3 D65 blackbody:2856K daylight:5000K line:555nm
+  photopic convert lamp.csv --quantity irradiance --unit mW/m2/nm
+  photopic convert lamp.csv --distance 2m --cone 30deg        (lx into cd and lm)
+  photopic convert LED-B3 --scale-to '800 lm'                 (lm back into W)
+  photopic convert line:500nm --scale-to '100 W'              (photons per second)
+  photopic convert *.csv --json > results.json
+  photopic convert lamp.csv --plot lamp.svg
+  cat lamp.csv | photopic convert - --csv")]
+pub(super) struct ConvertArgs {
+    /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
+    /// line:555nm.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<String>,
+
+    #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
+    pub integration: Integration,
+    #[command(flatten)]
+    pub colour: Colour,
+    #[command(flatten)]
+    pub geometry: GeometryArgs,
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// How the input is read.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading")]
+pub(super) struct Reading {
+    /// What the spectrum is of: flux, intensity, irradiance, radiance, exitance, energy, exposure or relative.
+    #[arg(long, value_name = "QUANTITY")]
+    pub quantity: Option<Quantity>,
+    /// Unit of the samples, such as W/m2/nm, mW/(m2 sr nm), uW/cm2/nm, W/nm, umol/m2/s/nm; without a wavelength it is per band.
+    #[arg(long)]
+    pub unit: Option<SpectralUnit>,
+    /// Unit of the wavelengths where the file does not state one: nm (the default), um, m, angstrom.
+    #[arg(long, value_name = "UNIT")]
+    pub wavelength_unit: Option<WavelengthUnit>,
+    /// Format, where recognising it by content is not wanted: csv, tm27, cgats, jcamp, oceanview, uprtek, sekonic.
+    #[arg(long)]
+    pub format: Option<Format>,
+    /// Separator of delimited text: a character, `tab` or `blank`.
+    #[arg(long, value_parser = separator)]
+    pub separator: Option<char>,
+    /// Decimal mark of delimited text: `.` or `,`.
+    #[arg(long, value_name = "MARK", value_parser = decimal)]
+    pub decimal: Option<char>,
+    /// One spectrum per column or per row of delimited text: columns, rows.
+    #[arg(long)]
+    pub layout: Option<Layout>,
+    /// Convert only the spectra of this name (repeatable; case is ignored).
+    #[arg(long, value_name = "NAME")]
+    pub select: Vec<String>,
+}
+
+/// How it is integrated.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Integration")]
+pub(super) struct Integration {
+    /// Rule; by default CIE 15 summation on equal steps, the exact integral of straight lines on unequal ones.
+    #[arg(long, value_enum)]
+    pub rule: Option<RuleArg>,
+    /// Wavelengths that count, such as 380-780 (nm); by default all there are.
+    #[arg(long, value_name = "LOW-HIGH", value_parser = measures::range_nm)]
+    pub range: Option<(f64, f64)>,
+    /// Resample to this step (nm) first; by default nothing is resampled.
+    #[arg(long, value_name = "NM", value_parser = positive)]
+    pub resample: Option<f64>,
+    /// Interpolation of --resample.
+    #[arg(long, value_enum, default_value = "linear", requires = "resample")]
+    pub interpolation: InterpolationArg,
+    /// Range of --resample (nm); by default the spectrum's own.
+    #[arg(long, value_name = "LOW-HIGH", value_parser = measures::range_nm, requires = "resample")]
+    pub resample_range: Option<(f64, f64)>,
+    /// What --resample puts beyond the ends of the samples.
+    #[arg(long, value_enum, default_value = "refuse", requires = "resample")]
+    pub extrapolation: ExtrapolationArg,
+    /// K_m in lm/W.
+    #[arg(long, value_name = "LM_PER_W", default_value_t = K_M, value_parser = positive)]
+    pub k_m: f64,
+    /// K'_m in lm/W.
+    #[arg(long, value_name = "LM_PER_W", default_value_t = K_M_SCOTOPIC, value_parser = positive)]
+    pub k_m_scotopic: f64,
+    /// Luminous efficiency function: cie-1924-v, judd-1951-v, judd-vos-1978-v, cie-1964-v10, cie-2008-v-2deg, cie-2008-v-10deg.
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub efficiency: Efficiency,
+    /// Photopic luminance (cd/m2) of the adapting field: adds mesopic figures (CIE 191).
+    #[arg(long, value_name = "CD_PER_M2", value_parser = positive)]
+    pub mesopic_adaptation: Option<f64>,
+}
+
+/// Colour.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Colour")]
+pub(super) struct Colour {
+    /// Observer of XYZ and chromaticity: cie-1931-2deg, cie-1964-10deg, cie-2015-2deg, cie-2015-10deg.
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub observer: Observer,
+    /// Second radiation constant c2: its90 (1.4388e-2 m K, as CIE 15 prescribes for CCT), si (exact), nbs1931 (1.435e-2).
+    #[arg(long, value_enum, default_value = "its90")]
+    pub c2: C2Arg,
+    /// How CCT and Duv are found: by minimising the distance to the locus, or by Ohno's table.
+    #[arg(long, value_enum, default_value = "exact")]
+    pub cct_method: CctArg,
+    /// White point x,y of dominant wavelength and purity; by default equal energy.
+    #[arg(long, value_name = "X,Y", value_parser = measures::xy)]
+    pub white: Option<[f64; 2]>,
+    /// White x,y to which the eye is adapted, for RGB; by default each space's own.
+    #[arg(long, value_name = "X,Y", value_parser = measures::xy)]
+    pub rgb_white: Option<[f64; 2]>,
+    /// Chromatic adaptation from --rgb-white: bradford, cat16, none.
+    #[arg(long, default_value = "bradford", requires = "rgb_white")]
+    pub adaptation: Transform,
+}
+
+/// Geometry that connects quantities.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Geometry (each option opens relations, none is assumed)")]
+#[expect(clippy::struct_excessive_bools, reason = "independent switches of a command line")]
+pub(super) struct GeometryArgs {
+    /// Distance from source to receiver, such as 2m: E = I/r².
+    #[arg(long, value_parser = measures::length)]
+    pub distance: Option<f64>,
+    /// Angle of incidence at the receiver, such as 30deg.
+    #[arg(long, value_name = "ANGLE", value_parser = measures::angle)]
+    pub incidence: Option<f64>,
+    /// Emitting area, such as 1cm2; for an irradiance without --distance, the receiving area.
+    #[arg(long, value_parser = measures::area)]
+    pub area: Option<f64>,
+    /// Solid angle that the light fills evenly, such as 0.1sr: of the beam; for irradiance and radiance without --distance, of
+    /// the source as the receiver sees it.
+    #[arg(long, value_name = "OMEGA", value_parser = measures::solid_angle)]
+    pub solid_angle: Option<f64>,
+    /// The same as a cone, by its half-angle, such as 15deg.
+    #[arg(long, value_name = "HALF_ANGLE", value_parser = measures::angle)]
+    pub cone: Option<f64>,
+    /// The source emits by Lambert's cosine law.
+    #[arg(long)]
+    pub lambertian: bool,
+    /// The source emits alike in all directions.
+    #[arg(long)]
+    pub isotropic: bool,
+    /// Extended source facing the receiver: sphere:R, disk:R, rect:WxH, triangle:BxH; goes with --distance.
+    #[arg(long, value_name = "SHAPE", value_parser = measures::shape)]
+    pub source: Option<Shape>,
+    /// Duration, such as 10s: Q = Φt, H = Et.
+    #[arg(long, value_parser = measures::time)]
+    pub time: Option<f64>,
+    /// Ask for a quantity by name; an error says which geometry is missing (repeatable).
+    #[arg(long, value_name = "QUANTITY")]
+    pub to: Vec<Quantity>,
+    /// Scale the spectrum to a level: '800 lm', '500 lx', '300 cd/m2', '100 W', '1 W/m2'.
+    #[arg(long, value_name = "LEVEL")]
+    pub scale_to: Option<Level>,
+}
+
+/// Output.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct Output {
+    /// One JSON document.
+    #[arg(long, conflicts_with = "csv")]
+    pub json: bool,
+    /// One table with a header row.
+    #[arg(long)]
+    pub csv: bool,
+    /// Groups of figures, separated by commas; luminous figures, XYZ and chromaticity always are there.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "GROUPS", default_value = "all")]
+    pub figures: Vec<Group>,
+    /// Write to a file instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draw the spectrum (one input): a .svg or .png file.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// What to draw.
+    #[arg(long, value_enum, default_value = "all", requires = "plot")]
+    pub plot_kind: PlotKind,
+}
+
+/// What `--plot` draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum PlotKind {
+    /// All three on one sheet.
+    All,
+    /// The spectrum with V(λ).
+    Spectrum,
+    /// The CIE 1976 u′v′ diagram.
+    Chromaticity,
+    /// The CIE 1931 xy diagram.
+    ChromaticityXy,
+    /// The TM-30 colour vector graphic.
+    Tm30,
+}
+
+/// A group of figures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Group {
+    /// Everything.
+    All,
+    /// Nothing but luminous figures, XYZ and chromaticity.
+    Luminous,
+    /// CCT, Duv, dominant wavelength, purity.
+    Colour,
+    /// Ra and R1–R14.
+    Cri,
+    /// Rf, Rg, hue bins.
+    Tm30,
+    /// CIE S 026.
+    AlphaOpic,
+    /// Photon numbers.
+    Photon,
+    /// Blue-light and UV hazard weighting.
+    Hazard,
+    /// RGB spaces.
+    Rgb,
+    /// Peak, centroid, width.
+    Shape,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum RuleArg {
+    /// Δλ Σ S w (CIE 15).
+    Summation,
+    /// Trapezoids of the product.
+    Trapezoid,
+    /// The exact integral of straight lines.
+    Exact,
+    /// Σ S w over lines.
+    Lines,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum InterpolationArg {
+    /// Straight lines.
+    Linear,
+    /// Sprague (CIE 167).
+    Sprague,
+    /// Natural cubic spline.
+    Cubic,
+    /// Monotone cubic.
+    Pchip,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum ExtrapolationArg {
+    /// An error.
+    Refuse,
+    /// Zero.
+    Zero,
+    /// The nearest sample.
+    Constant,
+    /// The line through the two nearest.
+    Linear,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum C2Arg {
+    /// 1.4388e-2 m·K.
+    Its90,
+    /// Exact.
+    Si,
+    /// 1.435e-2 m·K.
+    Nbs1931,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum CctArg {
+    /// Direct minimisation.
+    Exact,
+    /// Ohno's table.
+    Ohno2013,
+}
+
+fn separator(text: &str) -> Result<char, String> {
+    match text {
+        "tab" | "\\t" | "\t" => Ok('\t'),
+        "blank" | "space" | " " => Ok(' '),
+        _ => {
+            let mut chars = text.chars();
+            chars
+                .next()
+                .filter(|c| chars.next().is_none() && !c.is_alphanumeric())
+                .ok_or_else(|| format!("`{text}` is no separator; expected one character such as `;`, or tab, or blank"))
+        }
+    }
+}
+
+fn decimal(text: &str) -> Result<char, String> {
+    match text {
+        "." | "," => Ok(if text == "." { '.' } else { ',' }),
+        _ => Err(format!("`{text}` is no decimal mark; expected `.` or `,`")),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && v.is_finite());
+    number.ok_or_else(|| format!("`{text}`; expected a positive number"))
+}
+
+impl ConvertArgs {
+    /// What the user says about the inputs.
+    pub(super) fn read_options(&self) -> ReadOptions {
+        let r = &self.reading;
+        ReadOptions {
+            format: r.format,
+            wavelength_unit: r.wavelength_unit,
+            separator: r.separator,
+            decimal: r.decimal,
+            layout: r.layout,
+        }
+    }
+
+    /// The settings of the conversion.
+    pub(super) fn settings(&self) -> Settings {
+        let (i, c, g) = (&self.integration, &self.colour, &self.geometry);
+        Settings {
+            contract: Contract {
+                rule: i.rule.map(|r| match r {
+                    RuleArg::Summation => Rule::Summation,
+                    RuleArg::Trapezoid => Rule::Trapezoid,
+                    RuleArg::Exact => Rule::Exact,
+                    RuleArg::Lines => Rule::Lines,
+                }),
+                range_nm: i.range,
+            },
+            resampling: i.resample.map(|step_nm| Resampling {
+                step_nm,
+                range_nm: i.resample_range,
+                interpolation: match i.interpolation {
+                    InterpolationArg::Linear => Interpolation::Linear,
+                    InterpolationArg::Sprague => Interpolation::Sprague,
+                    InterpolationArg::Cubic => Interpolation::Cubic,
+                    InterpolationArg::Pchip => Interpolation::Pchip,
+                },
+                extrapolation: match i.extrapolation {
+                    ExtrapolationArg::Refuse => Extrapolation::Refuse,
+                    ExtrapolationArg::Zero => Extrapolation::Zero,
+                    ExtrapolationArg::Constant => Extrapolation::Constant,
+                    ExtrapolationArg::Linear => Extrapolation::Linear,
+                },
+            }),
+            efficiency: i.efficiency,
+            efficacy: Efficacy { k_m: i.k_m, k_m_scotopic: i.k_m_scotopic },
+            observer: c.observer,
+            c2: match c.c2 {
+                C2Arg::Its90 => SecondRadiation::Its90,
+                C2Arg::Si => SecondRadiation::Si,
+                C2Arg::Nbs1931 => SecondRadiation::Nbs1931,
+            },
+            cct_method: match c.cct_method {
+                CctArg::Exact => cct::Method::Exact,
+                CctArg::Ohno2013 => cct::Method::Ohno2013,
+            },
+            dominant_white_xy: c.white.unwrap_or([1.0 / 3.0, 1.0 / 3.0]),
+            rgb_white: c.rgb_white.and_then(chromaticity::xyz_of_xy),
+            adaptation: c.adaptation,
+            mesopic_adaptation: i.mesopic_adaptation,
+            geometry: Geometry {
+                distance_m: g.distance,
+                incidence_rad: g.incidence,
+                area_m2: g.area,
+                solid_angle_sr: g.solid_angle,
+                cone_half_angle_rad: g.cone,
+                lambertian: g.lambertian,
+                isotropic: g.isotropic,
+                shape: g.source,
+                time_s: g.time,
+            },
+            groups: self.groups(),
+            level: g.scale_to.clone(),
+        }
+    }
+
+    fn groups(&self) -> Groups {
+        let has = |g| self.output.figures.contains(&g) || self.output.figures.contains(&Group::All);
+        Groups {
+            colour: has(Group::Colour),
+            cri: has(Group::Cri),
+            tm30: has(Group::Tm30),
+            alpha_opic: has(Group::AlphaOpic),
+            photon: has(Group::Photon),
+            hazard: has(Group::Hazard),
+            rgb: has(Group::Rgb),
+            shape: has(Group::Shape),
+        }
+    }
+}

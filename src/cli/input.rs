@@ -1,0 +1,151 @@
+//! Opening inputs: files, standard input and named sources, with checksum and progress counted on the way.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use indicatif::ProgressBar;
+use sha2::{Digest, Sha256};
+
+use crate::constants::SecondRadiation;
+use crate::finding::Finding;
+use crate::illuminant::named;
+use crate::report::envelope::Input;
+use crate::spectrum::format::{self, Measured, Opened, ReadOptions, RowStream};
+use crate::spectrum::{Quantity, SpectralUnit};
+
+/// An input ready to be converted.
+pub(super) enum Loaded {
+    /// Spectra that are in memory.
+    Spectra(Vec<Item>, Input, Vec<Finding>),
+    /// A table with one spectrum per row, read as it goes.
+    Stream(Box<RowStream<Counted>>, Checksum),
+}
+
+/// A spectrum in memory.
+pub(super) struct Item {
+    pub measured: Measured,
+    pub printed: Vec<format::Printed>,
+}
+
+/// Why an input was not read, ready to print.
+pub(super) struct Refused {
+    pub message: String,
+    pub finding: Finding,
+}
+
+impl Refused {
+    pub(super) fn new(path: &str, error: format::Error) -> Self {
+        let located = error.in_file(path);
+        let message = located.to_string();
+        let finding = Finding::error("S000", message.clone()).at(located.location().clone());
+        Self { message, finding }
+    }
+
+    pub(super) fn plain(path: &str, message: &str) -> Self {
+        let location = crate::finding::Location::default().in_file(path);
+        Self { message: format!("{path}: {message}"), finding: Finding::error("S000", message).at(location) }
+    }
+}
+
+/// What the user says about quantity and unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Said<'a> {
+    pub quantity: Option<Quantity>,
+    pub unit: Option<&'a SpectralUnit>,
+}
+
+/// The running checksum of an input being read.
+#[derive(Clone, Default)]
+pub(super) struct Checksum(Arc<Mutex<Sha256>>);
+
+impl Checksum {
+    fn update(&self, bytes: &[u8]) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).update(bytes);
+    }
+
+    /// The input with its checksum, once it has been read to the end.
+    pub(super) fn input(&self, path: &str) -> Input {
+        let digest = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone().finalize();
+        let hex = digest.iter().map(|b| format!("{b:02x}")).collect();
+        Input { path: path.to_owned(), sha256: Some(hex) }
+    }
+}
+
+/// A reader that keeps the checksum and moves the progress bar.
+pub(super) struct Counted {
+    inner: Box<dyn Read + Send>,
+    checksum: Checksum,
+    progress: ProgressBar,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.checksum.update(&buffer[..count]);
+        self.progress.inc(count as u64);
+        Ok(count)
+    }
+}
+
+/// Opens one input. A file of the name goes before a source of the name.
+pub(super) fn open(
+    path: &str,
+    options: &ReadOptions,
+    said: Said<'_>,
+    c2: SecondRadiation,
+    progress: &ProgressBar,
+) -> Result<Loaded, Refused> {
+    if path != "-" && !Path::new(path).exists() && (named::is_name(path) || !looks_like_a_file(path)) {
+        return source(path, c2);
+    }
+    let inner: Box<dyn Read + Send> = if path == "-" {
+        Box::new(io::stdin())
+    } else {
+        let refuse = |e: io::Error| Refused::plain(path, &format!("cannot be read: {}; expected a readable file, `-`, or a source by name", plain(&e)));
+        let file = File::open(path).map_err(refuse)?;
+        if file.metadata().is_ok_and(|m| m.is_dir()) {
+            return Err(Refused::plain(path, "is a folder; expected a file (name its files, for example with a wildcard)"));
+        }
+        Box::new(file)
+    };
+    let checksum = Checksum::default();
+    let reader = Counted { inner, checksum: checksum.clone(), progress: progress.clone() };
+    let file = match format::open(reader, options).map_err(|e| Refused::new(path, e))? {
+        Opened::Stream(stream) => return Ok(Loaded::Stream(stream, checksum)),
+        Opened::Whole(file) => file,
+    };
+    let mut findings = file.findings;
+    let mut items = Vec::with_capacity(file.value.entries.len());
+    for entry in file.value.entries {
+        let resolved = entry.resolve(said.quantity, said.unit).map_err(|e| Refused::new(path, e))?;
+        findings.extend(resolved.findings);
+        items.push(Item { measured: resolved.value, printed: entry.printed });
+    }
+    Ok(Loaded::Spectra(items, checksum.input(path), findings))
+}
+
+/// The operating system's words without its number.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
+}
+
+/// A mistyped file should be told that there is no such file, a mistyped source which sources there are.
+fn looks_like_a_file(path: &str) -> bool {
+    path.contains(['/', '\\', '.'])
+}
+
+fn source(name: &str, c2: SecondRadiation) -> Result<Loaded, Refused> {
+    let source = named::source(name, c2).map_err(|e| Refused::plain(name, &e.to_string()))?;
+    let mut findings = Vec::new();
+    if source.quantity == Quantity::Relative {
+        findings.push(
+            Finding::info("P001", "a source known up to a factor: only ratios are reported").hint("give it a level with --scale-to"),
+        );
+    }
+    let measured = Measured { name: source.name, quantity: source.quantity, spectrum: source.spectrum };
+    let items = vec![Item { measured, printed: Vec::new() }];
+    Ok(Loaded::Spectra(items, Input { path: name.to_owned(), sha256: None }, findings))
+}

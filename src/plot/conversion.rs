@@ -1,0 +1,187 @@
+//! From conversions to panels: which curves, points and vectors stand for a spectrum.
+
+use crate::colorimetry::observer::Observer;
+use crate::colorimetry::{cct, dominant, rgb};
+use crate::colorimetry::adaptation::Transform;
+use crate::constants::SecondRadiation;
+use crate::conversion::{Conversion, Settings};
+use crate::spectrum::{Quantity, Sampling, Spectrum};
+use crate::units::significant;
+
+use super::{
+    ChromaticityPanel, ColourVectorPanel, Curve, Diagram, LocusPoint, MarkedPoint, PlanckPoint, SpectrumPanel, Weighting,
+};
+
+/// A converted spectrum to draw.
+#[derive(Debug, Clone, Copy)]
+pub struct Drawn<'a> {
+    /// What to call it.
+    pub name: &'a str,
+    /// Its figures.
+    pub conversion: &'a Conversion,
+    /// Its samples, SI per nm where it has a scale.
+    pub spectrum: &'a Spectrum,
+}
+
+/// Name and unit of the spectral quantity, for the axis.
+fn value_label(quantity: Quantity, sampling: Sampling) -> String {
+    let unit = match (quantity, sampling) {
+        (Quantity::Relative, _) => return "relative spectral power".to_owned(),
+        (q, Sampling::Lines) => q.unit().to_owned(),
+        (Quantity::Flux, _) => "W/nm".to_owned(),
+        (Quantity::Energy, _) => "J/nm".to_owned(),
+        (Quantity::Intensity, _) => "W/(sr·nm)".to_owned(),
+        (Quantity::Irradiance | Quantity::Exitance, _) => "W/(m²·nm)".to_owned(),
+        (Quantity::Radiance, _) => "W/(m²·sr·nm)".to_owned(),
+        (Quantity::Exposure, _) => "J/(m²·nm)".to_owned(),
+    };
+    format!("spectral {} [{unit}]", quantity.word())
+}
+
+/// sRGB colours standing for wavelengths, every 5 nm: the brightest display colour of the hue, dimmed towards the ends of
+/// the visible range.
+fn wavelength_colours() -> Vec<(f64, [u8; 3])> {
+    let [x, y, z] = Observer::Cie1931.colour_matching_functions();
+    (0..=94)
+        .filter_map(|i| {
+            let w = 360.0 + 5.0 * f64::from(i);
+            let colour = rgb::colour([x.at(w), y.at(w), z.at(w)], &rgb::SRGB, Transform::None, None)?;
+            let dim = (((w - 360.0) / 60.0).clamp(0.0, 1.0) * ((780.0 - w) / 100.0).clamp(0.0, 1.0)).powf(0.6);
+            // Saturation as such is not the point: a fifth of grey keeps neighbouring hues apart for most eyes.
+            let shown = colour.encoded.map(|v| (255.0 * dim * (0.15 + 0.85 * v)).round().clamp(0.0, 255.0) as u8);
+            Some((w, shown))
+        })
+        .collect()
+}
+
+/// A real minus sign, as figures in a drawing have it.
+fn signed(text: String) -> String {
+    text.replace('-', "−")
+}
+
+/// The column of key figures.
+fn key_figures(c: &Conversion) -> Vec<String> {
+    let mut out = Vec::new();
+    if let Some(f) = c.absolute.first() {
+        out.push(format!("{} {}", significant(f.photopic, 4), f.quantity.luminous_unit()));
+        out.push(format!("{} {}", significant(f.radiometric, 4), f.quantity.unit()));
+    }
+    if let Some(k) = c.efficacy_lm_per_w {
+        out.push(format!("{} lm/W", significant(k, 4)));
+    }
+    if let Some(cct) = c.cct {
+        out.push(format!("CCT {:.0} K", cct.kelvin));
+        out.push(format!("Duv {:+.4}", if cct.duv.abs() < 5e-5 { 0.0 } else { cct.duv }));
+    }
+    if let Some([x, y]) = c.xy {
+        out.push(format!("x {x:.4}, y {y:.4}"));
+    }
+    if let Some(cri) = c.cri {
+        out.push(format!("Ra {:.1}, R9 {:.1}", cri.ra, cri.r[8]));
+    }
+    if let Some(t) = &c.tm30 {
+        out.push(format!("Rf {:.1}, Rg {}", t.rf, t.rg.map_or("–".to_owned(), |g| format!("{g:.1}"))));
+    }
+    if let Some(der) = c.alpha_opic.iter().find(|a| a.receptor == "melanopic").and_then(|a| a.der) {
+        out.push(format!("melanopic DER {der:.3}"));
+    }
+    out.into_iter().map(signed).collect()
+}
+
+/// The spectra with V(λ) on top.
+#[must_use]
+pub fn spectrum_panel(drawn: &[Drawn<'_>], settings: &Settings) -> SpectrumPanel {
+    let curve = |d: &Drawn<'_>| {
+        let (w, v) = (d.spectrum.wavelengths_nm().to_vec(), d.spectrum.values().to_vec());
+        match d.spectrum.sampling() {
+            Sampling::Density => Curve::density(d.name, w, v),
+            Sampling::Lines => Curve::lines(d.name, w, v),
+        }
+    };
+    let v = settings.efficiency.weighting();
+    let first = drawn.first();
+    SpectrumPanel {
+        title: match drawn {
+            [one] => one.name.to_owned(),
+            _ => String::new(),
+        },
+        curves: drawn.iter().map(curve).collect(),
+        value_label: first.map_or_else(String::new, |d| value_label(d.conversion.quantity, d.spectrum.sampling())),
+        colours: wavelength_colours(),
+        weighting: Some(Weighting {
+            name: "V(λ)".to_owned(),
+            samples: v.wavelengths_nm().iter().copied().zip(v.values().iter().copied()).collect(),
+        }),
+        figures: match drawn {
+            [one] => key_figures(one.conversion),
+            _ => Vec::new(),
+        },
+        range_nm: None,
+    }
+}
+
+/// The chromaticities in a diagram with the Planckian locus.
+#[must_use]
+pub fn chromaticity_panel(drawn: &[Drawn<'_>], diagram: Diagram) -> ChromaticityPanel {
+    let xy_of_uv = |[u, v]: [f64; 2]| {
+        // 1960 (u, v) to (x, y): the inverse of the projective map.
+        let d = 2.0 * u - 8.0 * v + 4.0;
+        [3.0 * u / d, 2.0 * v / d]
+    };
+    let planck = |mired: f64| {
+        let temperature_k = 1e6 / mired;
+        let [x, y] = xy_of_uv(cct::planckian_uv(temperature_k, SecondRadiation::default()));
+        PlanckPoint { temperature_k, x, y }
+    };
+    let points = (drawn.iter())
+        .filter_map(|d| d.conversion.xy.map(|[x, y]| MarkedPoint { name: d.name.to_owned(), x, y, reference: false }))
+        .collect();
+    ChromaticityPanel {
+        title: match diagram {
+            Diagram::Cie1976 => "CIE 1976 u′v′",
+            Diagram::Cie1931 => "CIE 1931 xy",
+        }
+        .to_owned(),
+        diagram,
+        locus: (dominant::spectral_locus(Observer::Cie1931).into_iter())
+            .map(|[wavelength_nm, x, y]| LocusPoint { wavelength_nm, x, y })
+            .collect(),
+        planck: (0..=200).map(|i| planck(5.0 * f64::from(i))).collect(),
+        points,
+    }
+}
+
+/// The TM-30 colour vector graphic; `None` where there are no TM-30 figures or a hue bin is empty.
+#[must_use]
+pub fn colour_vector_panel(drawn: &Drawn<'_>) -> Option<ColourVectorPanel> {
+    let tm30 = drawn.conversion.tm30.as_ref()?;
+    let mut vectors = [([0.0; 2], [0.0; 2]); 16];
+    for (vector, bin) in vectors.iter_mut().zip(&tm30.bins) {
+        let bin = bin.as_ref()?;
+        *vector = (bin.reference, bin.test);
+    }
+    Some(ColourVectorPanel {
+        title: "TM-30 colour vector graphic".to_owned(),
+        vectors,
+        fidelity: tm30.rf,
+        gamut: tm30.rg?,
+        cct_k: drawn.conversion.cct.map(|c| c.kelvin),
+        duv: drawn.conversion.cct.map(|c| c.duv),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colorimetry::chromaticity;
+
+    #[test]
+    fn the_planckian_locus_is_drawn_where_it_is() {
+        let panel = chromaticity_panel(&[], Diagram::Cie1931);
+        for p in panel.planck.iter().skip(1) {
+            let uv = chromaticity::uv_prime_of_xy([p.x, p.y]).expect("a chromaticity");
+            let [u, v] = cct::planckian_uv(p.temperature_k, SecondRadiation::default());
+            assert!((uv[0] - u).abs() < 1e-12 && (uv[1] - 1.5 * v).abs() < 1e-12, "{p:?}");
+        }
+    }
+}
