@@ -22,7 +22,8 @@ fn cases(settings: Settings) -> Option<Vec<(Row, Conversion)>> {
     Some(
         rows.into_iter()
             .map(|row| {
-                let (name, spectrum) = spectra.iter().find(|(n, _)| *n == row["name"]).expect("every row has a spectrum");
+                let (name, spectrum) =
+                    spectra.iter().find(|(n, _)| *n == row["name"]).expect("every row has a spectrum");
                 let got = converter.convert(name, Quantity::Relative, spectrum).expect("converts");
                 (row, got.value)
             })
@@ -93,15 +94,19 @@ fn native_grid_figures_agree_to_the_printed_digits() {
 fn colour_rendering_agrees_to_the_printed_digits_at_the_same_temperature() {
     use photopic::colorimetry::cri;
     use photopic::constants::SecondRadiation;
-    let (Some(spectra), Some(path)) = (common::reference_spectra(), common::shared("spectra/reference.csv")) else { return };
+    let (Some(spectra), Some(path)) = (common::reference_spectra(), common::shared("spectra/reference.csv")) else {
+        return;
+    };
     let mut compared = 0;
     for row in common::rows(&path) {
-        let (Some(kelvin), Some(ra), Some(r9)) = (cell(&row, "np_CCT"), cell(&row, "np_Ra"), cell(&row, "np_R9")) else {
+        let (Some(kelvin), Some(ra), Some(r9)) = (cell(&row, "np_CCT"), cell(&row, "np_Ra"), cell(&row, "np_R9"))
+        else {
             continue;
         };
         let (name, spectrum) = spectra.iter().find(|(n, _)| *n == row["name"]).expect("every row has a spectrum");
         let contract = Contract::default();
-        let plan = cri::Plan::new(spectrum.grid(), spectrum.sampling(), &contract, SecondRadiation::Its90).expect("fits");
+        let plan =
+            cri::Plan::new(spectrum.grid(), spectrum.sampling(), &contract, SecondRadiation::Its90).expect("fits");
         let got = plan.evaluate(spectrum.values(), kelvin).expect("there is light");
         // Indices are 100 less a difference: the twelve digits of their inputs are worth 5e-12 of the 100.
         assert!((got.ra - ra).abs() < 100.0 * PRINTED, "{name}: {} {ra}", got.ra);
@@ -127,7 +132,12 @@ fn the_ten_degree_observer_agrees() {
 fn other_rules_ranges_and_resampling_agree() {
     let rule = |rule, range_nm| Settings { contract: Contract { rule, range_nm }, ..Settings::default() };
     let resample = |interpolation| Settings {
-        resampling: Some(Resampling { step_nm: 1.0, range_nm: None, interpolation, extrapolation: Extrapolation::Refuse }),
+        resampling: Some(Resampling {
+            step_nm: 1.0,
+            range_nm: None,
+            interpolation,
+            extrapolation: Extrapolation::Refuse,
+        }),
         ..Settings::default()
     };
     let clip = Some((380.0, 780.0));
@@ -150,7 +160,11 @@ fn correlated_colour_temperature_agrees() {
     for (row, got) in &cases {
         let name = &row["name"];
         let (Some(kelvin), Some(duv)) = (cell(row, "np_CCT"), cell(row, "np_Duv")) else {
-            assert!(got.cct.is_none_or(|c| c.duv.abs() > 0.04), "{name}: the reference gives none, we give {:?}", got.cct);
+            assert!(
+                got.cct.is_none_or(|c| c.duv.abs() > 0.04),
+                "{name}: the reference gives none, we give {:?}",
+                got.cct
+            );
             continue;
         };
         let Some(cct) = got.cct else {
@@ -214,7 +228,9 @@ fn the_whole_blackbody_has_its_efficacy() {
     let Some(path) = common::shared("spectra/reference.csv") else { return };
     let converter = Converter::new(Settings::default());
     for row in common::rows(&path) {
-        let (Some(kelvin), Some(want)) = (row["name"].strip_prefix("BB"), cell(&row, "np_LER_total_bb")) else { continue };
+        let (Some(kelvin), Some(want)) = (row["name"].strip_prefix("BB"), cell(&row, "np_LER_total_bb")) else {
+            continue;
+        };
         let kelvin: f64 = kelvin.parse().expect("BB and a temperature");
         let source = named::source(&format!("blackbody:{kelvin}K"), SecondRadiation::Its90).expect("a blackbody");
         let got = converter.convert("", source.quantity, &source.spectrum).expect("converts").value;

@@ -41,7 +41,8 @@ impl Job<'_> {
     /// Whether a finding of a reader still holds: of negative samples the conversion says more, with their effect; that a
     /// spectrum is relative is settled by a level.
     fn tells(&self, finding: &Finding) -> bool {
-        finding.code != "S005" && !(self.converter.settings().level.is_some() && matches!(finding.code, "S010" | "P001"))
+        finding.code != "S005"
+            && !(self.converter.settings().level.is_some() && matches!(finding.code, "S010" | "P001"))
     }
 }
 
@@ -164,7 +165,10 @@ fn select(path: &str, items: Vec<Item>, names: &[String]) -> Result<Vec<Item>, R
     if chosen.is_empty() {
         let some: Vec<&str> = known.iter().take(12).map(String::as_str).collect();
         let more = if known.len() > some.len() { ", …" } else { "" };
-        return Err(Refused::plain(path, &format!("no spectrum named {}; expected one of {}{more}", names.join(" or "), some.join(", "))));
+        return Err(Refused::plain(
+            path,
+            &format!("no spectrum named {}; expected one of {}{more}", names.join(" or "), some.join(", ")),
+        ));
     }
     Ok(chosen)
 }
@@ -183,17 +187,22 @@ fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Do
     let heading = if several { format!("{path} [{name}]") } else { path.to_owned() };
     let place = Location::default().in_file(path);
     let place = if several { place.of_item(name) } else { place };
-    let refuse = |message: &str| {
-        Refused { message: format!("{heading}: {message}"), finding: Finding::error("P000", message).at(place.clone()) }
+    let refuse = |message: &str| Refused {
+        message: format!("{heading}: {message}"),
+        finding: Finding::error("P000", message).at(place.clone()),
     };
     let Checked { value, mut findings } = convert(job, name, *quantity, spectrum).map_err(|m| refuse(&m))?;
+    // The steps of a tabulated illuminant are its definition, not a coarse measurement of it.
+    findings.retain(|f| !(item.defined && f.code == "P003"));
     for finding in &mut findings {
         finding.location = place.clone();
     }
     let bytes = render(job, path, &heading, &value, &item.printed);
     let drawn = job.arguments.output.plot.is_some().then(|| {
-        let title = if several || name.is_empty() { format!("{path} {name}") } else { name.clone() };
-        convert_plot::Kept { name: title.trim().to_owned(), conversion: value, spectrum: spectrum.clone() }
+        // A column's header says less than the file's name, where the file holds nothing else.
+        let file = std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy());
+        let title = if several { name.clone() } else { file.into_owned() };
+        convert_plot::Kept { name: title, conversion: value, spectrum: spectrum.clone() }
     });
     Ok(Done { bytes, findings, drawn })
 }
@@ -454,8 +463,7 @@ fn row_done(
         finding: Finding::error("P000", message).at(place.clone()),
     };
     let spectrum = scale.apply(grid, row.values).map_err(|e| refuse(&e.to_string()))?;
-    let Checked { value, mut findings } =
-        convert(job, &row.name, scale.quantity, &spectrum).map_err(|m| refuse(&m))?;
+    let Checked { value, mut findings } = convert(job, &row.name, scale.quantity, &spectrum).map_err(|m| refuse(&m))?;
     for finding in &mut findings {
         finding.location = place.clone();
     }

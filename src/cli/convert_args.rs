@@ -302,10 +302,9 @@ fn separator(text: &str) -> Result<char, String> {
         "blank" | "space" | " " => Ok(' '),
         _ => {
             let mut chars = text.chars();
-            chars
-                .next()
-                .filter(|c| chars.next().is_none() && !c.is_alphanumeric())
-                .ok_or_else(|| format!("`{text}` is no separator; expected one character such as `;`, or tab, or blank"))
+            chars.next().filter(|c| chars.next().is_none() && !c.is_alphanumeric()).ok_or_else(|| {
+                format!("`{text}` is no separator; expected one character such as `;`, or tab, or blank")
+            })
         }
     }
 }

@@ -27,6 +27,8 @@ pub(super) enum Loaded {
 pub(super) struct Item {
     pub measured: Measured,
     pub printed: Vec<format::Printed>,
+    /// Made by name: its samples are what it is.
+    pub defined: bool,
 }
 
 /// Why an input was not read, ready to print.
@@ -103,10 +105,18 @@ pub(super) fn open(
     let inner: Box<dyn Read + Send> = if path == "-" {
         Box::new(io::stdin())
     } else {
-        let refuse = |e: io::Error| Refused::plain(path, &format!("cannot be read: {}; expected a readable file, `-`, or a source by name", plain(&e)));
+        let refuse = |e: io::Error| {
+            Refused::plain(
+                path,
+                &format!("cannot be read: {}; expected a readable file, `-`, or a source by name", plain(&e)),
+            )
+        };
         let file = File::open(path).map_err(refuse)?;
         if file.metadata().is_ok_and(|m| m.is_dir()) {
-            return Err(Refused::plain(path, "is a folder; expected a file (name its files, for example with a wildcard)"));
+            return Err(Refused::plain(
+                path,
+                "is a folder; expected a file (name its files, for example with a wildcard)",
+            ));
         }
         Box::new(file)
     };
@@ -121,7 +131,7 @@ pub(super) fn open(
     for entry in file.value.entries {
         let resolved = entry.resolve(said.quantity, said.unit).map_err(|e| Refused::new(path, e))?;
         findings.extend(resolved.findings);
-        items.push(Item { measured: resolved.value, printed: entry.printed });
+        items.push(Item { measured: resolved.value, printed: entry.printed, defined: false });
     }
     Ok(Loaded::Spectra(items, checksum.input(path), findings))
 }
@@ -142,10 +152,11 @@ fn source(name: &str, c2: SecondRadiation) -> Result<Loaded, Refused> {
     let mut findings = Vec::new();
     if source.quantity == Quantity::Relative {
         findings.push(
-            Finding::info("P001", "a source known up to a factor: only ratios are reported").hint("give it a level with --scale-to"),
+            Finding::info("P001", "a source known up to a factor: only ratios are reported")
+                .hint("give it a level with --scale-to"),
         );
     }
     let measured = Measured { name: source.name, quantity: source.quantity, spectrum: source.spectrum };
-    let items = vec![Item { measured, printed: Vec::new() }];
+    let items = vec![Item { measured, printed: Vec::new(), defined: true }];
     Ok(Loaded::Spectra(items, Input { path: name.to_owned(), sha256: None }, findings))
 }

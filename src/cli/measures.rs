@@ -96,7 +96,11 @@ pub(super) fn xy(text: &str) -> Result<[f64; 2], String> {
 
 /// `sphere:10cm`, `disk:5cm`, `rect:60cm x 60cm`, `triangle:10cm x 20cm`.
 pub(super) fn shape(text: &str) -> Result<Shape, String> {
-    let bad = || format!("`{text}` is no source; expected sphere:RADIUS, disk:RADIUS, rect:WIDTHxHEIGHT or triangle:BASExHEIGHT, such as disk:5cm or rect:60cmx60cm");
+    let bad = || {
+        format!(
+            "`{text}` is no source; expected sphere:RADIUS, disk:RADIUS, rect:WIDTHxHEIGHT or triangle:BASExHEIGHT, such as disk:5cm or rect:60cmx60cm"
+        )
+    };
     let (kind, sizes) = text.split_once(':').ok_or_else(bad)?;
     let positive = |text: &str| length(text).ok().filter(|v| *v > 0.0);
     let two = || sizes.split_once(['x', '×']).and_then(|(a, b)| Some((positive(a)?, positive(b)?)));
@@ -127,6 +131,8 @@ mod tests {
         for text in ["2", "", "m", "2 parsec", "NaN m", "infm"] {
             assert!(length(text).is_err(), "{text}");
         }
-        assert!(area("2m").is_err() && angle("30").is_err() && range_nm("780-380").is_err() && shape("disk:0m").is_err());
+        assert!(
+            area("2m").is_err() && angle("30").is_err() && range_nm("780-380").is_err() && shape("disk:0m").is_err()
+        );
     }
 }

@@ -80,9 +80,12 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile, Failure> {
     // Temporary files are private by default; a result is as readable as any file the user makes.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
-        .tempfile_in(folder)
-        .map_err(|e| Failure::Message(format!("{}: cannot be written: {e}; expected a folder that can be written to", path.display())))
+    builder.tempfile_in(folder).map_err(|e| {
+        Failure::Message(format!(
+            "{}: cannot be written: {e}; expected a folder that can be written to",
+            path.display()
+        ))
+    })
 }
 
 fn place(file: tempfile::NamedTempFile, path: &Path) -> Result<(), Failure> {

@@ -45,7 +45,16 @@ pub(super) fn run(arguments: &TablesArgs) -> Result<(), Failure> {
             for table in &chosen {
                 let i = table.info();
                 let cells = [&i.name, &i.title, &i.standard].map(|c| quote(c));
-                writeln!(out, "{},{},{},{},{},{}", cells.join(","), i.rows, i.first_nm, i.last_nm, quote(&i.licence), i.sha256)?;
+                writeln!(
+                    out,
+                    "{},{},{},{},{},{}",
+                    cells.join(","),
+                    i.rows,
+                    i.first_nm,
+                    i.last_nm,
+                    quote(&i.licence),
+                    i.sha256
+                )?;
             }
         }
         (None, false) => {

@@ -46,8 +46,7 @@ impl Cam02 {
         let to_cones = hpe * cat02.inverse() * DMat3::from_diagonal(100.0 / sharpened) * cat02;
         let k = 1.0 / (5.0 * ADAPTING_LUMINANCE + 1.0);
         let k4 = k.powi(4);
-        let luminance_factor =
-            k4 * ADAPTING_LUMINANCE + 0.1 * (1.0 - k4).powi(2) * (5.0 * ADAPTING_LUMINANCE).cbrt();
+        let luminance_factor = k4 * ADAPTING_LUMINANCE + 0.1 * (1.0 - k4).powi(2) * (5.0 * ADAPTING_LUMINANCE).cbrt();
         let n = BACKGROUND / 100.0;
         let mut model = Self {
             to_cones,

@@ -46,7 +46,9 @@ pub enum Undefined {
     #[error("there is no light, or not a finite amount, and so no chromaticity")]
     Black,
     /// Too far from the locus.
-    #[error("the chromaticity is {duv:+.4} from the Planckian locus in (u, v); a CCT is defined within ±0.05 (CIE 15:2018, 9.4)")]
+    #[error(
+        "the chromaticity is {duv:+.4} from the Planckian locus in (u, v); a CCT is defined within ±0.05 (CIE 15:2018, 9.4)"
+    )]
     TooFar {
         /// Signed distance.
         duv: f64,
@@ -194,7 +196,11 @@ pub fn nearest(uv: [f64; 2], c2: SecondRadiation) -> Result<Cct, Undefined> {
         let off = [here.p[0] - uv[0], here.p[1] - uv[1]];
         let g = off[0] * here.d[0] + off[1] * here.d[1];
         let slope = here.d[0].powi(2) + here.d[1].powi(2) + off[0] * here.dd[0] + off[1] * here.dd[1];
-        if g > 0.0 { high = mired } else { low = mired }
+        if g > 0.0 {
+            high = mired
+        } else {
+            low = mired
+        }
         let newton = mired - g / slope;
         let next = if slope > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
         let moved = (next - mired).abs();
@@ -208,11 +214,7 @@ pub fn nearest(uv: [f64; 2], c2: SecondRadiation) -> Result<Cct, Undefined> {
     finish(mired, off, here.d, c2)
 }
 
-fn nearest_index(
-    knots: &[Knot],
-    among: impl Iterator<Item = usize>,
-    distance: impl Fn(&Knot) -> f64,
-) -> usize {
+fn nearest_index(knots: &[Knot], among: impl Iterator<Item = usize>, distance: impl Fn(&Knot) -> f64) -> usize {
     let mut best = (0, f64::INFINITY);
     for i in among {
         let d = distance(&knots[i]);

@@ -33,7 +33,11 @@ impl ReferencePlan {
     pub fn planck(&self, kelvin: f64) -> Vec<f64> {
         let scale = planck::ln_radiance(560.0, kelvin, self.c2);
         if scale < -600.0 {
-            return self.wavelengths_nm.iter().map(|&w| (planck::ln_radiance(w, kelvin, self.c2) - scale).exp()).collect();
+            return self
+                .wavelengths_nm
+                .iter()
+                .map(|&w| (planck::ln_radiance(w, kelvin, self.c2) - scale).exp())
+                .collect();
         }
         let scale = 1.0 / scale.exp();
         self.wavelengths_nm.iter().map(|&w| planck::radiance(w, kelvin, self.c2) * scale).collect()

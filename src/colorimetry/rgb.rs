@@ -157,7 +157,11 @@ mod tests {
         // IEC 61966-2-1 Amd 1:2003, XYZ → linear sRGB, seven decimals as in its annex; the standard's own matrix was derived
         // from four-digit forward coefficients, so the last places differ by up to 3e-4.
         let m = SRGB.from_xyz().expect("proper primaries");
-        let want = [[3.2406255, -1.5372080, -0.4986286], [-0.9689307, 1.8757561, 0.0415175], [0.0557101, -0.2040211, 1.0569959]];
+        let want = [
+            [3.2406255, -1.5372080, -0.4986286],
+            [-0.9689307, 1.8757561, 0.0415175],
+            [0.0557101, -0.2040211, 1.0569959],
+        ];
         for (r, row) in want.iter().enumerate() {
             for (c, v) in row.iter().enumerate() {
                 assert!((m.col(c)[r] - v).abs() < 4e-4, "{r} {c}: {}", m.col(c)[r]);

@@ -37,8 +37,14 @@ pub(super) fn evaluate(
     let lit = luminous.photopic > 0.0 && luminous.photopic.is_finite() && xyz.iter().all(|v| v.is_finite());
     if !lit {
         findings.push(
-            Finding::error("P005", format!("no luminous content (∫ S V dλ · K_m = {}): ratios, colour and colour quality are not defined", luminous.photopic))
-                .hint("the spectrum has no light between 360 nm and 830 nm, or its noise outweighs it"),
+            Finding::error(
+                "P005",
+                format!(
+                    "no luminous content (∫ S V dλ · K_m = {}): ratios, colour and colour quality are not defined",
+                    luminous.photopic
+                ),
+            )
+            .hint("the spectrum has no light between 360 nm and 830 nm, or its noise outweighs it"),
         );
     }
     let mesopic = mesopic_state(settings, &luminous, lit, &mut findings)?;
@@ -116,14 +122,21 @@ fn integration(
                 "the spectrum covers {first}–{last} nm; what it may have beyond changes the photopic integral by at most {:.2e} of it, if it is nowhere larger there than its largest sample",
                 bound
             );
-            findings.push(if bound > NOTABLE { Finding::warning("P002", message) } else { Finding::info("P002", message) });
+            findings.push(if bound > NOTABLE {
+                Finding::warning("P002", message)
+            } else {
+                Finding::info("P002", message)
+            });
         }
         if let Some(bound) = error_bound.step_relative.filter(|b| *b > 0.01) {
             let widest = spectrum.grid().widest_step_nm();
             findings.push(
                 Finding::warning(
                     "P003",
-                    format!("with steps up to {widest} nm the photopic integral may be off by {:.1} %", 100.0 * bound),
+                    format!(
+                        "with steps up to {widest} nm the photopic integral may be off by up to {:.1} %",
+                        100.0 * bound
+                    ),
                 )
                 .hint("measure with smaller steps; --rule exact or --resample show what interpolation makes of it"),
             );
@@ -147,10 +160,17 @@ fn negative_samples(plan: &Plan, spectrum: &Spectrum, luminous: &Luminous, k_m: 
     let negative: Vec<f64> = spectrum.values().iter().map(|v| v.min(0.0)).collect();
     // ȳ of the observer and V(λ) are close enough to state a share; exact for the default pair.
     let share = k_m * dot(&plan.colour.weights()[1], &negative) / luminous.photopic;
-    let effect = if share.is_finite() { format!("they lower the photopic integral by {:.2e} of it", share.abs()) } else { "there is nothing to set them against".to_owned() };
+    let effect = if share.is_finite() {
+        format!("they lower the photopic integral by {:.2e} of it", share.abs())
+    } else {
+        "there is nothing to set them against".to_owned()
+    };
     findings.push(
-        Finding::warning("P006", format!("{count} of {} samples are negative and were kept; {effect}", spectrum.values().len()))
-            .hint("negative samples are noise about zero; clipping them would raise every integral"),
+        Finding::warning(
+            "P006",
+            format!("{count} of {} samples are negative and were kept; {effect}", spectrum.values().len()),
+        )
+        .hint("negative samples are noise about zero; clipping them would raise every integral"),
     );
 }
 
@@ -185,7 +205,8 @@ fn absolute(
         radiometric: factor * luminous.radiometric,
         photopic: factor * luminous.photopic,
         scotopic: factor * luminous.scotopic,
-        mesopic: mesopic.map(|m| mesopic::mesopic(factor * luminous.photopic, factor * luminous.scotopic, m.adaptation.m)),
+        mesopic: mesopic
+            .map(|m| mesopic::mesopic(factor * luminous.photopic, factor * luminous.scotopic, m.adaptation.m)),
         relations,
     };
     let mut all = vec![figures(quantity, 1.0, Vec::new())];
@@ -265,7 +286,13 @@ fn rgb_figures(settings: &Settings, xyz: [f64; 3], lit: bool, findings: &mut Vec
         .map(|f| format!("{} ({:.0} % of the largest component)", f.key, 100.0 * f.colour.clipped))
         .collect();
     if !clipped.is_empty() {
-        findings.push(Finding::info("C006", format!("the colour is outside the gamut of {}; negative components were cut in the encoded values", clipped.join(", "))));
+        findings.push(Finding::info(
+            "C006",
+            format!(
+                "the colour is outside the gamut of {}; negative components were cut in the encoded values",
+                clipped.join(", ")
+            ),
+        ));
     }
     all
 }
@@ -276,7 +303,9 @@ fn coverage(spectrum: &Spectrum, (low, high): (f64, f64), of: &str, findings: &m
     if spectrum.sampling() == Sampling::Density && (first > low || last < high) {
         findings.push(Finding::warning(
             "P008",
-            format!("the spectrum covers {first}–{last} nm of the {low}–{high} nm of {of}; nothing is added for the rest"),
+            format!(
+                "the spectrum covers {first}–{last} nm of the {low}–{high} nm of {of}; nothing is added for the rest"
+            ),
         ));
     }
 }
@@ -287,7 +316,10 @@ fn hazards(plan: &hazard::Plan, values: &[f64], findings: &mut Vec<Finding>) -> 
         let (low, high) = hazard.covered_nm.unwrap_or_default();
         findings.push(Finding::info(
             "P007",
-            format!("{} is weighted over {low}–{high} nm only: the spectrum does not cover the rest of its weighting", hazard.key),
+            format!(
+                "{} is weighted over {low}–{high} nm only: the spectrum does not cover the rest of its weighting",
+                hazard.key
+            ),
         ));
     }
     all
@@ -305,7 +337,10 @@ fn shape(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversio
     if spectrum.sampling() == Sampling::Density {
         out.fwhm_nm = full_width(spectrum, peak_nm, 0.5 * peak);
         if out.fwhm_nm.is_none() {
-            findings.push(Finding::info("P009", "no full width at half maximum: the spectrum does not fall to half on both sides of its peak"));
+            findings.push(Finding::info(
+                "P009",
+                "no full width at half maximum: the spectrum does not fall to half on both sides of its peak",
+            ));
         }
     }
 }
@@ -314,7 +349,8 @@ fn shape(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversio
 fn full_width(spectrum: &Spectrum, peak_nm: f64, level: f64) -> Option<f64> {
     let (x, y) = (spectrum.wavelengths_nm(), spectrum.values());
     let at = x.iter().position(|w| *w == peak_nm)?;
-    let cross = |inner: usize, outer: usize| x[inner] + (x[outer] - x[inner]) * (y[inner] - level) / (y[inner] - y[outer]);
+    let cross =
+        |inner: usize, outer: usize| x[inner] + (x[outer] - x[inner]) * (y[inner] - level) / (y[inner] - y[outer]);
     let left = (1..=at).rev().find(|&i| y[i - 1] <= level).map(|i| cross(i, i - 1))?;
     let right = (at..x.len() - 1).find(|&i| y[i + 1] <= level).map(|i| cross(i, i + 1))?;
     Some(right - left)

@@ -150,7 +150,9 @@ pub enum Error {
     #[error(transparent)]
     Resample(#[from] ResampleError),
     /// A step or range of resampling makes no grid.
-    #[error("resampling by {step_nm} nm from {low_nm} to {high_nm} nm; expected a positive step and at least two and at most 10 million samples")]
+    #[error(
+        "resampling by {step_nm} nm from {low_nm} to {high_nm} nm; expected a positive step and at least two and at most 10 million samples"
+    )]
     ResampleGrid {
         /// Step.
         step_nm: f64,

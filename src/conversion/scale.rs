@@ -24,7 +24,9 @@ pub struct Level {
 #[non_exhaustive]
 pub enum LevelError {
     /// Not a positive number with a unit.
-    #[error("a level of `{found}`; expected a positive number with its unit, such as `500 lx`, `800 lm`, `300 cd/m2`, `100 W` or `1 W/m2`")]
+    #[error(
+        "a level of `{found}`; expected a positive number with its unit, such as `500 lx`, `800 lm`, `300 cd/m2`, `100 W` or `1 W/m2`"
+    )]
     Text {
         /// The text met.
         found: String,
@@ -33,7 +35,9 @@ pub enum LevelError {
     #[error(transparent)]
     Unit(#[from] UnitError),
     /// The spectrum is already absolute, of another quantity.
-    #[error("the spectrum is one of {from} and cannot be scaled to `{to}`; expected a level of {from}, or --quantity relative")]
+    #[error(
+        "the spectrum is one of {from} and cannot be scaled to `{to}`; expected a level of {from}, or --quantity relative"
+    )]
     Quantity {
         /// What the spectrum is of.
         from: Quantity,

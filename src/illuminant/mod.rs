@@ -29,7 +29,9 @@ pub enum Error {
         found: String,
     },
     /// No source of this name.
-    #[error("no source is named `{name}`; expected a file, blackbody:2856K, daylight:6500K, line:555nm, or one of {known}")]
+    #[error(
+        "no source is named `{name}`; expected a file, blackbody:2856K, daylight:6500K, line:555nm, or one of {known}"
+    )]
     Unknown {
         /// The name met.
         name: String,

@@ -40,9 +40,8 @@ pub struct Plan {
 
 fn actions() -> [Weighting; 5] {
     let table = tables::get("cie-s026").expect("the action spectra are embedded");
-    RECEPTORS.map(|column| {
-        Weighting::table(table.wavelengths_nm(), table.column(column).expect("one column per receptor"))
-    })
+    RECEPTORS
+        .map(|column| Weighting::table(table.wavelengths_nm(), table.column(column).expect("one column per receptor")))
 }
 
 /// α-opic efficacies of luminous radiation of D65, W/lm, in the order of [`RECEPTORS`]: summed over the 5 nm table of D65

@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use crate::geometry::solid_angle;
 use crate::spectrum::Quantity;
-use crate::units::{Candela, CandelaPerSquareMetre, Lumen, LumenPerSquareMetre, Lux, Metre, Radian, SquareMetre, Steradian};
+use crate::units::{
+    Candela, CandelaPerSquareMetre, Lumen, LumenPerSquareMetre, Lux, Metre, Radian, SquareMetre, Steradian,
+};
 
 /// Illuminance from a point source of intensity `i` at a distance, its light at `incidence` to the normal: E = I cosθ / r².
 #[must_use]
@@ -282,7 +284,13 @@ impl Geometry {
         let received = matches!(start, Irradiance | Radiance | Exposure) && self.distance_m.is_none();
         if let (Some(shape), Some(distance)) = (self.shape, self.distance_m) {
             let omega = shape.projected_solid_angle_sr(distance) * incidence;
-            edge(Radiance, Irradiance, omega, "E = L Ω⊥ (uniform source on the axis)", "L = E/Ω⊥ (uniform source on the axis)");
+            edge(
+                Radiance,
+                Irradiance,
+                omega,
+                "E = L Ω⊥ (uniform source on the axis)",
+                "L = E/Ω⊥ (uniform source on the axis)",
+            );
             edge(Radiance, Intensity, shape.projected_area_m2(), "I = L A⊥", "L = I/A⊥");
         } else if let Some(distance) = self.distance_m {
             edge(Intensity, Irradiance, incidence / (distance * distance), "E = I cosθ/r²", "I = E r²/cosθ");
@@ -293,8 +301,20 @@ impl Geometry {
             .or(self.cone_half_angle_rad.map(solid_angle::cone))
             .or(self.isotropic.then_some(4.0 * PI));
         if self.lambertian {
-            edge(Radiance, Exitance, lambert, "M = π sin²τ L (Lambert; τ = 90° without --cone)", "L = M/(π sin²τ) (Lambert; τ = 90° without --cone)");
-            edge(Intensity, Flux, lambert, "Φ = π sin²τ I₀ (cosine law; τ = 90° without --cone)", "I₀ = Φ/(π sin²τ) (cosine law; τ = 90° without --cone)");
+            edge(
+                Radiance,
+                Exitance,
+                lambert,
+                "M = π sin²τ L (Lambert; τ = 90° without --cone)",
+                "L = M/(π sin²τ) (Lambert; τ = 90° without --cone)",
+            );
+            edge(
+                Intensity,
+                Flux,
+                lambert,
+                "Φ = π sin²τ I₀ (cosine law; τ = 90° without --cone)",
+                "I₀ = Φ/(π sin²τ) (cosine law; τ = 90° without --cone)",
+            );
         } else if let Some(omega) = omega {
             if received {
                 let projected = self.cone_half_angle_rad.map_or(omega, solid_angle::cone_projected) * incidence;
@@ -366,8 +386,12 @@ pub fn what_connects(from: Quantity, to: Quantity) -> &'static str {
         (Relative, _) | (_, Relative) => "an absolute quantity and unit (--quantity, --unit) or --scale-to",
         (Irradiance, Intensity) | (Intensity, Irradiance) => "--distance",
         (Flux, Intensity) | (Intensity, Flux) => "--cone, --solid-angle, --isotropic or --lambertian",
-        (Flux, Irradiance) | (Irradiance, Flux) => "--area (of the receiver), or --distance with --cone, --solid-angle, --isotropic or --lambertian",
-        (Radiance, Irradiance) | (Irradiance, Radiance) => "--cone or --solid-angle of the source as seen from the receiver, or --source with --distance",
+        (Flux, Irradiance) | (Irradiance, Flux) => {
+            "--area (of the receiver), or --distance with --cone, --solid-angle, --isotropic or --lambertian"
+        }
+        (Radiance, Irradiance) | (Irradiance, Radiance) => {
+            "--cone or --solid-angle of the source as seen from the receiver, or --source with --distance"
+        }
         (Radiance, Intensity) | (Intensity, Radiance) => "--area",
         (Radiance, Exitance) | (Exitance, Radiance) => "--lambertian",
         (Radiance, Flux) | (Flux, Radiance) => "--area with --lambertian",
@@ -436,7 +460,8 @@ mod tests {
     #[test]
     fn an_extended_source_is_not_a_point() {
         // A disk as wide as far: E = πL r²/(r² + d²) = πL/2, where the point formula would say πL.
-        let disk = Geometry { distance_m: Some(1.0), shape: Some(Shape::Disk { radius_m: 1.0 }), ..Geometry::default() };
+        let disk =
+            Geometry { distance_m: Some(1.0), shape: Some(Shape::Disk { radius_m: 1.0 }), ..Geometry::default() };
         let e = factor(Quantity::Radiance, Quantity::Irradiance, &disk).expect("connected");
         assert!((e - PI / 2.0).abs() < 1e-15);
         assert!((factor(Quantity::Radiance, Quantity::Intensity, &disk).expect("connected") - PI).abs() < 1e-15);

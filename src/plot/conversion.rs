@@ -1,15 +1,16 @@
 //! From conversions to panels: which curves, points and vectors stand for a spectrum.
 
+use crate::colorimetry::adaptation::Transform;
 use crate::colorimetry::observer::Observer;
 use crate::colorimetry::{cct, dominant, rgb};
-use crate::colorimetry::adaptation::Transform;
 use crate::constants::SecondRadiation;
 use crate::conversion::{Conversion, Settings};
 use crate::spectrum::{Quantity, Sampling, Spectrum};
 use crate::units::significant;
 
 use super::{
-    ChromaticityPanel, ColourVectorPanel, Curve, Diagram, LocusPoint, MarkedPoint, PlanckPoint, SpectrumPanel, Weighting,
+    ChromaticityPanel, ColourVectorPanel, Curve, Diagram, LocusPoint, MarkedPoint, PlanckPoint, SpectrumPanel,
+    Weighting,
 };
 
 /// A converted spectrum to draw.
@@ -38,18 +39,21 @@ fn value_label(quantity: Quantity, sampling: Sampling) -> String {
     format!("spectral {} [{unit}]", quantity.word())
 }
 
-/// sRGB colours standing for wavelengths, every 5 nm: the brightest display colour of the hue, dimmed towards the ends of
-/// the visible range.
+/// sRGB colours standing for wavelengths, every 5 nm: the spectral colour with some white added and cut to the gamut, as
+/// bright as the display can, dimmed towards the ends of the visible range.
 fn wavelength_colours() -> Vec<(f64, [u8; 3])> {
     let [x, y, z] = Observer::Cie1931.colour_matching_functions();
     (0..=94)
         .filter_map(|i| {
             let w = 360.0 + 5.0 * f64::from(i);
-            let colour = rgb::colour([x.at(w), y.at(w), z.at(w)], &rgb::SRGB, Transform::None, None)?;
-            let dim = (((w - 360.0) / 60.0).clamp(0.0, 1.0) * ((780.0 - w) / 100.0).clamp(0.0, 1.0)).powf(0.6);
-            // Saturation as such is not the point: a fifth of grey keeps neighbouring hues apart for most eyes.
-            let shown = colour.encoded.map(|v| (255.0 * dim * (0.15 + 0.85 * v)).round().clamp(0.0, 255.0) as u8);
-            Some((w, shown))
+            let linear = rgb::colour([x.at(w), y.at(w), z.at(w)], &rgb::SRGB, Transform::None, None)?.linear;
+            // All the white that the gamut asks for would turn red into crimson, none would make flat bands of green and red.
+            let white = 0.35 * linear.iter().copied().fold(0.0, f64::min).abs();
+            let inside = linear.map(|v| (v + white).max(0.0));
+            let largest = inside.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+            let dim = ((w - 360.0) / 60.0).clamp(0.0, 1.0) * ((790.0 - w) / 110.0).clamp(0.0, 1.0);
+            let shown = inside.map(|v| rgb::SRGB.encoding.encode(dim * v / largest));
+            Some((w, shown.map(|v| (255.0 * v).round().clamp(0.0, 255.0) as u8)))
         })
         .collect()
 }
@@ -91,8 +95,13 @@ fn key_figures(c: &Conversion) -> Vec<String> {
 /// The spectra with V(λ) on top.
 #[must_use]
 pub fn spectrum_panel(drawn: &[Drawn<'_>], settings: &Settings) -> SpectrumPanel {
+    // Several relative spectra have no common scale but their peaks.
+    let by_peak = drawn.len() > 1 && drawn.iter().all(|d| d.conversion.quantity == Quantity::Relative);
     let curve = |d: &Drawn<'_>| {
-        let (w, v) = (d.spectrum.wavelengths_nm().to_vec(), d.spectrum.values().to_vec());
+        let peak = d.spectrum.peak().1;
+        let scale = if by_peak && peak > 0.0 { 1.0 / peak } else { 1.0 };
+        let w = d.spectrum.wavelengths_nm().to_vec();
+        let v = d.spectrum.values().iter().map(|v| scale * v).collect();
         match d.spectrum.sampling() {
             Sampling::Density => Curve::density(d.name, w, v),
             Sampling::Lines => Curve::lines(d.name, w, v),
@@ -106,7 +115,11 @@ pub fn spectrum_panel(drawn: &[Drawn<'_>], settings: &Settings) -> SpectrumPanel
             _ => String::new(),
         },
         curves: drawn.iter().map(curve).collect(),
-        value_label: first.map_or_else(String::new, |d| value_label(d.conversion.quantity, d.spectrum.sampling())),
+        value_label: match first {
+            Some(_) if by_peak => "spectral power relative to the peak".to_owned(),
+            Some(d) => value_label(d.conversion.quantity, d.spectrum.sampling()),
+            None => String::new(),
+        },
         colours: wavelength_colours(),
         weighting: Some(Weighting {
             name: "V(λ)".to_owned(),

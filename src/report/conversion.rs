@@ -32,9 +32,7 @@ pub fn keys(quantity: Quantity) -> Option<Keys> {
         Some(Keys { radiometric, luminous, photons_total, photons_count, photons_par })
     };
     match quantity {
-        Quantity::Flux => {
-            of("flux_w", "luminous_flux_lm", "total_umol_per_s", "total_photons_per_s", "ppf_umol_per_s")
-        }
+        Quantity::Flux => of("flux_w", "luminous_flux_lm", "total_umol_per_s", "total_photons_per_s", "ppf_umol_per_s"),
         Quantity::Intensity => of(
             "intensity_w_per_sr",
             "luminous_intensity_cd",
@@ -116,10 +114,13 @@ pub fn settings(settings: &Settings) -> Value {
 }
 
 fn resampling(settings: &Settings) -> Value {
-    settings.resampling.map_or_else(|| json!("none"), |r| {
-        let range = r.range_nm.map_or_else(|| json!("own"), |(a, b)| json!([a, b]));
-        json!({"step_nm": r.step_nm, "range_nm": range, "interpolation": r.interpolation})
-    })
+    settings.resampling.map_or_else(
+        || json!("none"),
+        |r| {
+            let range = r.range_nm.map_or_else(|| json!("own"), |(a, b)| json!([a, b]));
+            json!({"step_nm": r.step_nm, "range_nm": range, "interpolation": r.interpolation})
+        },
+    )
 }
 
 /// The object of one conversion in `results[]`.
@@ -148,11 +149,14 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
     set("luminous_efficacy_of_radiation_lm_per_w", number(c.efficacy_lm_per_w));
     set("scotopic_photopic_ratio", number(c.scotopic_photopic_ratio));
     set("xyz", c.xyz.map_or(Value::Null, |v| json!(v)));
-    set("xyz_scale", match c.xyz_scale {
-        XyzScale::Absolute => "K_m times the integrals",
-        XyzScale::Hundred => "Y = 100",
-    }
-    .into());
+    set(
+        "xyz_scale",
+        match c.xyz_scale {
+            XyzScale::Absolute => "K_m times the integrals",
+            XyzScale::Hundred => "Y = 100",
+        }
+        .into(),
+    );
     set("chromaticity_xy", pair(c.xy));
     set("chromaticity_uv_prime", pair(c.uv_prime));
     if groups.colour {
@@ -175,7 +179,12 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
     if groups.tm30 {
         set("tm30_rf", number(c.tm30.as_ref().map(|v| v.rf)));
         set("tm30_rg", number(c.tm30.as_ref().and_then(|v| v.rg)));
-        set("tm30_bins", c.tm30.as_ref().map_or(Value::Null, |v| v.bins.iter().map(|b| b.as_ref().map(bin)).collect::<Vec<_>>().into()));
+        set(
+            "tm30_bins",
+            c.tm30
+                .as_ref()
+                .map_or(Value::Null, |v| v.bins.iter().map(|b| b.as_ref().map(bin)).collect::<Vec<_>>().into()),
+        );
     }
     if groups.alpha_opic {
         set("alpha_opic", alpha_opic(c));
@@ -290,10 +299,8 @@ fn rgb(c: &Conversion, settings: &Settings) -> Value {
     for f in &c.rgb {
         out.insert(format!("{}_linear", f.key), json!(f.colour.linear));
     }
-    let clipped: Map<String, Value> = (c.rgb.iter())
-        .filter(|f| f.colour.out_of_gamut)
-        .map(|f| (f.key.to_owned(), f.colour.clipped.into()))
-        .collect();
+    let clipped: Map<String, Value> =
+        (c.rgb.iter()).filter(|f| f.colour.out_of_gamut).map(|f| (f.key.to_owned(), f.colour.clipped.into())).collect();
     let whites: Map<String, Value> = SPACES.iter().map(|s| (s.key.to_owned(), s.white_name.into())).collect();
     out.insert("clipped".into(), clipped.into());
     out.insert("white".into(), whites.into());

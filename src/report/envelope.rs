@@ -35,7 +35,11 @@ impl<W: Write> Envelope<W> {
     /// Those of the writer.
     pub fn begin(mut out: W, command: &str, settings: &Value) -> io::Result<Self> {
         let version = env!("CARGO_PKG_VERSION");
-        write!(out, "{{\"tool\":\"photopic\",\"version\":\"{version}\",\"command\":{},\"settings\":", Value::from(command))?;
+        write!(
+            out,
+            "{{\"tool\":\"photopic\",\"version\":\"{version}\",\"command\":{},\"settings\":",
+            Value::from(command)
+        )?;
         serde_json::to_writer(&mut out, settings)?;
         out.write_all(b",\"results\":[")?;
         Ok(Self { out, results: 0, findings: Vec::new(), inputs: Vec::new() })

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use crate::conversion::{AbsoluteFigures, Conversion, Settings};
-use crate::spectrum::integrate::Rule;
 use crate::spectrum::Quantity;
+use crate::spectrum::integrate::Rule;
 use crate::units::significant;
 
 /// Width of the labels' column.
@@ -93,8 +93,9 @@ fn grid(c: &Conversion) -> String {
     let (low, high) = i.range_nm;
     let samples = if i.samples == 1 { "1 sample".to_owned() } else { format!("{} samples", i.samples) };
     match (i.rule, i.step_nm) {
+        (Rule::Lines, _) if i.samples == 1 => format!("one line at {low} nm"),
         (Rule::Lines, _) => format!("{samples} taken as lines, {low}–{high} nm"),
-        (_, Some(step)) => format!("{low}–{high} nm by {} nm ({samples})", significant(step, 4).trim_end_matches('0').trim_end_matches('.')),
+        (_, Some(step)) => format!("{low}–{high} nm by {} nm ({samples})", (step * 1e6).round() / 1e6),
         (_, None) => format!("{low}–{high} nm, unequal steps ({samples})"),
     }
 }
@@ -193,7 +194,7 @@ fn biology(out: &mut Lines, c: &Conversion) {
 
 fn shape(out: &mut Lines, c: &Conversion) {
     let Some(peak) = c.peak_wavelength_nm else { return };
-    let mut text = format!("peak {} nm", significant(peak, DIGITS));
+    let mut text = format!("peak {peak} nm");
     if let Some(v) = c.centroid_wavelength_nm {
         let _ = write!(text, ", centroid {v:.2} nm");
     }
@@ -217,10 +218,20 @@ fn basis(out: &mut Lines, c: &Conversion, settings: &Settings) {
         |r| format!("resampled to {} nm, {:?}", r.step_nm, r.interpolation).to_lowercase(),
     );
     let observer = settings.observer;
-    out.line("obtained by", format!("{rule}, {resampling}, K_m {} lm/W, {}, {observer}", settings.efficacy.k_m, settings.efficiency));
+    out.line(
+        "obtained by",
+        format!("{rule}, {resampling}, K_m {} lm/W, {}, {observer}", settings.efficacy.k_m, settings.efficiency),
+    );
     let part = |v: Option<f64>| v.map_or("–".into(), |v| format!("{} %", significant(100.0 * v, 2)));
     let bound = &i.error_bound;
-    out.line("error of the integral", format!("at most {} from the step, {} from the range", part(bound.step_relative), part(bound.truncation_relative)));
+    out.line(
+        "error of the integral",
+        format!(
+            "at most {} from the step, {} from the range",
+            part(bound.step_relative),
+            part(bound.truncation_relative)
+        ),
+    );
 }
 
 /// What the instrument printed beside ours, as lines; empty without any.

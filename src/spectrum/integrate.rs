@@ -36,10 +36,7 @@ impl Weighting {
     ///
     /// # Panics
     /// Where the two differ in length or have fewer than two entries.
-    pub fn table(
-        wavelengths_nm: impl Into<Cow<'static, [f64]>>,
-        values: impl Into<Cow<'static, [f64]>>,
-    ) -> Self {
+    pub fn table(wavelengths_nm: impl Into<Cow<'static, [f64]>>, values: impl Into<Cow<'static, [f64]>>) -> Self {
         let (wavelengths_nm, values) = (wavelengths_nm.into(), values.into());
         assert_eq!(wavelengths_nm.len(), values.len(), "a weighting has one value per wavelength");
         assert!(wavelengths_nm.len() > 1, "a weighting has at least two entries");
@@ -171,7 +168,9 @@ pub struct Contract {
 #[non_exhaustive]
 pub enum RuleError {
     /// Summation needs one Δλ.
-    #[error("summation of samples with unequal steps (up to {widest_step_nm} nm); expected equal steps, or the rule trapezoid or exact, or --resample")]
+    #[error(
+        "summation of samples with unequal steps (up to {widest_step_nm} nm); expected equal steps, or the rule trapezoid or exact, or --resample"
+    )]
     NotUniform {
         /// The widest step, nm.
         widest_step_nm: f64,
@@ -318,9 +317,9 @@ impl ErrorModel {
         let (low, high) = (low.max(table_low), high.min(table_high));
         let (first, last) = grid.range_nm();
         let exact = exact_weights(x, weighting, low.max(first), high.min(last));
-        let intervals =
-            x.windows(2).map(|w| weighting.absolute_integral(w[0].max(low), w[1].min(high))).collect();
-        let outside = weighting.absolute_integral(low, first.min(high)) + weighting.absolute_integral(last.max(low), high);
+        let intervals = x.windows(2).map(|w| weighting.absolute_integral(w[0].max(low), w[1].min(high))).collect();
+        let outside =
+            weighting.absolute_integral(low, first.min(high)) + weighting.absolute_integral(last.max(low), high);
         Self { sampling, exact, intervals, outside }
     }
 
@@ -381,7 +380,8 @@ mod tests {
         // ∫ (λ − 500) · triangle dλ = 50 · 50 by symmetry; two samples carry the straight line λ − 500.
         let two = integral(vec![400.0, 700.0], &[-100.0, 200.0], Rule::Exact, None);
         assert!((two - 2500.0).abs() < 1e-9, "{two}");
-        let uneven = integral(vec![499.0, 513.3, 551.7, 580.0, 601.0], &[-1.0, 13.3, 51.7, 80.0, 101.0], Rule::Exact, None);
+        let uneven =
+            integral(vec![499.0, 513.3, 551.7, 580.0, 601.0], &[-1.0, 13.3, 51.7, 80.0, 101.0], Rule::Exact, None);
         assert!((uneven - 2500.0).abs() < 1e-9, "{uneven}");
         // Clipped to the left half: ∫ (λ−500)·(λ−500)/50 from 500 to 550 = 50²/3.
         let half = integral(vec![400.0, 700.0], &[-100.0, 200.0], Rule::Exact, Some((400.0, 550.0)));
@@ -434,19 +434,30 @@ mod tests {
                 };
                 let fine = sample(0.05);
                 let truth = dot(
-                    &weights(fine.grid(), Sampling::Density, &triangle(), &Contract { rule: Some(Rule::Exact), range_nm: None })
-                        .expect("fits"),
+                    &weights(
+                        fine.grid(),
+                        Sampling::Density,
+                        &triangle(),
+                        &Contract { rule: Some(Rule::Exact), range_nm: None },
+                    )
+                    .expect("fits"),
                     fine.values(),
                 );
                 for step in [1.0, 2.0, 4.0, 8.0] {
                     let s = sample(step);
                     for rule in [Rule::Summation, Rule::Trapezoid, Rule::Exact] {
                         let contract = Contract { rule: Some(rule), range_nm: None };
-                        let got = dot(&weights(s.grid(), Sampling::Density, &triangle(), &contract).expect("fits"), s.values());
+                        let got = dot(
+                            &weights(s.grid(), Sampling::Density, &triangle(), &contract).expect("fits"),
+                            s.values(),
+                        );
                         let bound = ErrorModel::new(s.grid(), Sampling::Density, &triangle(), &contract).bound(&s, got);
                         let error = (got / truth - 1.0).abs();
                         let step_bound = bound.step_relative.expect("not zero");
-                        assert!(error <= step_bound * 1.2 + 1e-6, "σ {sigma} at {centre}, step {step}, {rule:?}: {error} > {step_bound}");
+                        assert!(
+                            error <= step_bound * 1.2 + 1e-6,
+                            "σ {sigma} at {centre}, step {step}, {rule:?}: {error} > {step_bound}"
+                        );
                     }
                 }
             }

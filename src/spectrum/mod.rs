@@ -136,7 +136,8 @@ fn uniform_step(wavelengths: &[f64]) -> Option<f64> {
     }
     let step = (last - first) / (wavelengths.len() - 1) as f64;
     // Measured from the first sample, so that rounding in a file's printed wavelengths does not accumulate.
-    let even = wavelengths.iter().enumerate().all(|(i, w)| (w - first - step * i as f64).abs() <= UNIFORM_TOLERANCE * step);
+    let even =
+        wavelengths.iter().enumerate().all(|(i, w)| (w - first - step * i as f64).abs() <= UNIFORM_TOLERANCE * step);
     even.then_some(step)
 }
 

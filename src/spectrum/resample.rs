@@ -57,7 +57,9 @@ pub enum ResampleError {
         high: f64,
     },
     /// Sprague's method needs equal spacing.
-    #[error("Sprague interpolation of {samples} samples with steps up to {widest_step_nm} nm; expected at least 6 equally spaced ones")]
+    #[error(
+        "Sprague interpolation of {samples} samples with steps up to {widest_step_nm} nm; expected at least 6 equally spaced ones"
+    )]
     NotUniform {
         /// Number of samples.
         samples: usize,
