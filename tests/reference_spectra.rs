@@ -43,7 +43,7 @@ fn worst(cases: &[(Row, Conversion)], key: &str, ours: impl Fn(&Conversion) -> O
         let (Some(want), Some(got)) = (cell(row, key), ours(got)) else { continue };
         compared += 1;
         let difference = if want == 0.0 { got.abs() } else { (got / want - 1.0).abs() };
-        if !(difference <= worst.0) {
+        if difference.is_nan() || difference > worst.0 {
             worst = (difference, row["name"].clone());
         }
     }

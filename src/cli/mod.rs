@@ -1,16 +1,13 @@
 //! The command line: arguments, files and exit codes. It holds no physics.
 
 use std::ffi::OsString;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
 mod convert;
-mod convert_args;
-mod convert_plot;
-mod input;
-mod measures;
+mod notes;
 mod output;
 mod tables;
 
@@ -41,7 +38,7 @@ struct Talk {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Spectra into photometric, colour, colour-quality, photon and α-opic figures.
-    Convert(Box<convert_args::ConvertArgs>),
+    Convert(Box<convert::ConvertArgs>),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -127,9 +124,4 @@ fn manual(verb: Option<&str>) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(page).render(&mut text)?;
     Ok(io::stdout().write_all(&text)?)
-}
-
-/// Whether a progress bar may be drawn.
-fn may_draw(talk: Talk) -> bool {
-    !talk.quiet && io::stderr().is_terminal()
 }

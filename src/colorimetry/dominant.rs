@@ -37,7 +37,8 @@ pub fn spectral_locus(observer: Observer) -> Vec<[f64; 3]> {
 pub fn dominant(xy: [f64; 2], white_xy: [f64; 2], observer: Observer) -> Option<Dominant> {
     let locus = spectral_locus(observer);
     let direction = [xy[0] - white_xy[0], xy[1] - white_xy[1]];
-    if !(direction[0].hypot(direction[1]) > ACHROMATIC) {
+    let distance = direction[0].hypot(direction[1]);
+    if distance.is_nan() || distance <= ACHROMATIC {
         return None;
     }
     let (first, last) = (*locus.first()?, *locus.last()?);

@@ -8,6 +8,7 @@ use crate::photometry::luminous::Luminous;
 use crate::photometry::{alpha_opic, hazard, mesopic, photon, transfer};
 use crate::spectrum::integrate::{Rule, dot};
 use crate::spectrum::{Quantity, Sampling, Spectrum};
+use crate::units::significant;
 
 /// A relative error bound from which a finding becomes a warning.
 const NOTABLE: f64 = 1e-3;
@@ -134,7 +135,8 @@ fn integration(
                 Finding::warning(
                     "P003",
                     format!(
-                        "with steps up to {widest} nm the photopic integral may be off by up to {:.1} %",
+                        "with steps up to {} nm the photopic integral may be off by up to {:.1} %",
+                        significant(widest, 3),
                         100.0 * bound
                     ),
                 )
@@ -328,7 +330,7 @@ fn hazards(plan: &hazard::Plan, values: &[f64], findings: &mut Vec<Finding>) -> 
 /// Peak, centroid and full width at half maximum.
 fn shape(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversion, findings: &mut Vec<Finding>) {
     let (peak_nm, peak) = spectrum.peak();
-    if !(peak > 0.0) {
+    if peak <= 0.0 {
         return;
     }
     out.peak_wavelength_nm = Some(peak_nm);

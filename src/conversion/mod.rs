@@ -26,7 +26,7 @@ pub use scale::{Level, LevelError};
 
 /// Which groups of figures to calculate. Luminous figures, XYZ and chromaticity always are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "independent switches, named")]
+
 pub struct Groups {
     /// CCT, Duv, dominant wavelength, purity.
     pub colour: bool,

@@ -26,7 +26,16 @@ pub struct Hazard {
 /// The weightings compiled for one grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    hazards: Vec<(&'static str, Vec<f64>, Option<(f64, f64)>, bool)>,
+    hazards: Vec<Weighted>,
+}
+
+/// One weighting on the plan's grid.
+#[derive(Debug, Clone, PartialEq)]
+struct Weighted {
+    key: &'static str,
+    weights: Vec<f64>,
+    covered_nm: Option<(f64, f64)>,
+    complete: bool,
 }
 
 impl Plan {
@@ -46,18 +55,19 @@ impl Plan {
             let covered = (low.max(first), high.min(last));
             // Of a line spectrum nothing lies beyond its lines.
             let complete = sampling == Sampling::Lines || (first <= low && last >= high);
-            hazards.push((key, weights, (covered.0 <= covered.1).then_some(covered), complete));
+            let covered_nm = (covered.0 <= covered.1).then_some(covered);
+            hazards.push(Weighted { key, weights, covered_nm, complete });
         }
         Ok(Self { hazards })
     }
 
     /// The weighted integrals of a spectrum's values on the plan's grid.
     pub fn evaluate<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = Hazard> + 'a {
-        self.hazards.iter().map(|(key, weights, covered_nm, complete)| Hazard {
-            key,
-            weighted: dot(weights, values),
-            covered_nm: *covered_nm,
-            complete: *complete,
+        self.hazards.iter().map(|h| Hazard {
+            key: h.key,
+            weighted: dot(&h.weights, values),
+            covered_nm: h.covered_nm,
+            complete: h.complete,
         })
     }
 }

@@ -6,7 +6,9 @@
 //! exponent only where a sign follows it, as the standard has it.
 
 use super::error::{Error, ErrorKind};
+use super::instrument;
 use super::text::place;
+use crate::finding::Location;
 
 /// A line of a table, with its number in the file.
 #[derive(Debug, Clone, Copy)]
@@ -127,8 +129,21 @@ pub(super) struct Ordinates {
     pub values: Vec<f64>,
     /// Line of each ordinate.
     pub lines: Vec<u64>,
-    /// The abscissa in front of each line: which ordinate it belongs to, its value, its line.
-    pub abscissas: Vec<(usize, f64, u64)>,
+    /// The abscissa in front of each line.
+    pub abscissas: Vec<Abscissa>,
+}
+
+/// The abscissa in front of a line of ordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Abscissa {
+    /// The ordinate it belongs to; behind a check ordinate some writers mean the next one.
+    pub index: usize,
+    pub checked: bool,
+    pub value: f64,
+    /// One in its last printed digit.
+    pub digit: f64,
+    pub line: u64,
+    pub column: u64,
 }
 
 /// Reads `(X++(Y..Y))`. A count of ordinates beyond `most` ends the reading with an error before memory is taken.
@@ -138,7 +153,14 @@ pub(super) fn ordinates(lines: &[Line<'_>], most: u64) -> Result<Ordinates, Erro
     for &line in lines {
         let items = items(line)?;
         let Some((&(start, abscissa), rest)) = items.split_first() else { continue };
-        let Item::Value(abscissa) = abscissa else { return Err(line.not_a_number(start, start + 1, "wavelength")) };
+        let Item::Value(value) = abscissa else { return Err(line.not_a_number(start, start + 1, "wavelength")) };
+        let digits = line.text[start..].trim_start_matches(['+', '-']);
+        let printed = digits.find(|c: char| !(c.is_ascii_digit() || c == '.')).map_or(digits, |end| &digits[..end]);
+        let decimals = printed.split_once('.').map_or(0, |(_, decimals)| decimals.len().min(300));
+        let digit = 10f64.powi(-(decimals as i32));
+        let column = line.text[..start].chars().count() as u64 + 1;
+        let mut abscissa =
+            Abscissa { index: out.values.len(), checked: false, value, digit, line: line.number, column };
         // After differences a line begins with the last ordinate of the line before, as a check.
         let mut rest = rest;
         if by_difference && let (Some(&last), Some(&(at, item))) = (out.values.last(), rest.first()) {
@@ -151,11 +173,10 @@ pub(super) fn ordinates(lines: &[Line<'_>], most: u64) -> Result<Ordinates, Erro
                 }
                 _ => return Err(line.not_a_number(at, at + 1, "check ordinate")),
             }
-            out.abscissas.push((out.values.len() - 1, abscissa, line.number));
+            abscissa = Abscissa { index: abscissa.index - 1, checked: true, ..abscissa };
             rest = &rest[1..];
-        } else {
-            out.abscissas.push((out.values.len(), abscissa, line.number));
         }
+        out.abscissas.push(abscissa);
         by_difference = out.extend(line, rest, most)? && !out.values.is_empty();
     }
     Ok(out)
@@ -179,7 +200,9 @@ impl Ordinates {
             };
             let found = (self.values.len() as u64).saturating_add(times);
             if found > most {
-                return Err(line.error(at, ErrorKind::CountMismatch { what: "ordinates", stated: most, found }));
+                let kind =
+                    ErrorKind::Unexpected { found: format!("{found} ordinates"), expected: format!("at most {most}") };
+                return Err(line.error(at, kind));
             }
             for _ in 0..times {
                 let value = match (step, self.values.last()) {
@@ -197,11 +220,23 @@ impl Ordinates {
     }
 }
 
-/// One pair of `(XY..XY)`: line, byte of the abscissa, both numbers.
-pub(super) type Pair = (u64, usize, f64, f64);
+/// One point, with the line and column where it stands.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub x: f64,
+    pub y: f64,
+    pub line: u64,
+    pub column: u64,
+}
+
+impl Point {
+    pub(super) fn place(&self) -> Location {
+        Location::at(self.line, self.column)
+    }
+}
 
 /// Reads `(XY..XY)`: free format only.
-pub(super) fn pairs(lines: &[Line<'_>], most: u64) -> Result<Vec<Pair>, Error> {
+pub(super) fn pairs(lines: &[Line<'_>], most: u64) -> Result<Vec<Point>, Error> {
     let mut pairs = Vec::new();
     for &line in lines {
         let mut start = None;
@@ -214,7 +249,7 @@ pub(super) fn pairs(lines: &[Line<'_>], most: u64) -> Result<Vec<Pair>, Error> {
                 (true, Some(from)) => {
                     let what = if numbers.len().is_multiple_of(2) { "wavelength" } else { "value" };
                     let text = &line.text[from..at];
-                    let number = super::instrument::number(text, '.', place(line.text, line.number, from), what)?;
+                    let number = instrument::number(text, '.', what, || place(line.text, line.number, from))?;
                     numbers.push((from, number));
                     start = None;
                 }
@@ -225,9 +260,13 @@ pub(super) fn pairs(lines: &[Line<'_>], most: u64) -> Result<Vec<Pair>, Error> {
             let kind = ErrorKind::MissingColumn { found: numbers.len(), expected: numbers.len() + 1 };
             return Err(line.error(line.text.len(), kind));
         }
-        pairs.extend(numbers.chunks_exact(2).map(|pair| (line.number, pair[0].0, pair[0].1, pair[1].1)));
+        pairs.extend(numbers.chunks_exact(2).map(|pair| {
+            let column = line.text[..pair[0].0].chars().count() as u64 + 1;
+            Point { x: pair[0].1, y: pair[1].1, line: line.number, column }
+        }));
         if pairs.len() as u64 > most {
-            let kind = ErrorKind::CountMismatch { what: "points", stated: most, found: pairs.len() as u64 };
+            let kind =
+                ErrorKind::Unexpected { found: format!("{} points", pairs.len()), expected: format!("at most {most}") };
             return Err(line.error(0, kind));
         }
     }

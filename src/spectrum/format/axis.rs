@@ -18,21 +18,19 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Adds the next wavelength, which has to go on in the direction of the first two.
-    pub(super) fn push(&mut self, value: f64, location: Location) -> Result<(), Error> {
+    /// Adds the next wavelength, which has to go on in the direction of the first two; `place` is asked only for an error.
+    pub(super) fn push(&mut self, value: f64, line: u64, place: impl FnOnce() -> Location) -> Result<(), Error> {
         if value <= 0.0 {
-            return Err(Error::new(location, ErrorKind::NotPositive { found: value }));
+            return Err(Error::new(place(), ErrorKind::NotPositive { found: value }));
         }
         if let [.., last] = self.values[..] {
-            let descends = self.descends();
-            let onwards =
-                if self.values.len() == 1 { value != last } else { (value < last) == descends && value != last };
+            let onwards = value != last && (self.values.len() == 1 || (value < last) == self.descends());
             if !onwards {
-                return Err(self.disorder(value, last, location));
+                return Err(self.disorder(value, last, place()));
             }
         }
         self.values.push(value);
-        self.lines.push(location.line.unwrap_or(0));
+        self.lines.push(line);
         Ok(())
     }
 
@@ -43,9 +41,8 @@ impl Axis {
                 let kind = ErrorKind::DuplicateWavelength { wavelength: found, first_line: self.lines[at] };
                 Error::new(location, kind).with_hint("keep one of the two samples")
             }
-            None => {
-                Error::new(location, ErrorKind::Unsorted { found, previous }).with_hint("sort the rows by wavelength")
-            }
+            None => Error::new(location, ErrorKind::Unsorted { found, previous })
+                .with_hint("sort the samples by wavelength"),
         }
     }
 

@@ -3,6 +3,7 @@
 //! Fields such as `SPECTRAL_NM380`, `SPEC_380`, `nm380` or `R_380` hold the samples, in nm. They are reflectance or transmittance
 //! factors unless a keyword such as `MEAS_TYPE` says otherwise. A file may hold several tables; each set is one line.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::super::{Grid, Quantity, Spectrum, WavelengthUnit};
@@ -13,7 +14,7 @@ use super::header::{self, AxisUnit};
 use super::instrument;
 use super::rows::Negatives;
 use super::text::place;
-use super::{Entry, Format, ReadOptions, SpectrumFile};
+use super::{Entry, Format, ReadOptions, SpectrumFile, item};
 use crate::finding::{Checked, Finding, Location};
 
 /// Whether a text is such a file.
@@ -120,6 +121,7 @@ impl Reader<'_> {
                 let kind = ErrorKind::Unexpected { found: key.to_owned(), expected: format!("{expected} before it") };
                 return Err(Error::new(line.place(0), kind));
             }
+            _ if value.is_empty() => self.metadata.push((String::new(), key.to_owned())),
             _ => self.metadata.push((key.to_owned(), value.to_owned())),
         }
         Ok(())
@@ -192,7 +194,7 @@ impl Reader<'_> {
                 entry.spectrum = Spectrum::density(grid, entry.spectrum.values().to_vec())
                     .map_err(|error| Error::new(entry.location.clone(), error))?;
             }
-            negatives.add(entry.spectrum.values(), || entry.location.clone().of_item(&entry.name));
+            negatives.add(entry.spectrum.values(), || item(entry.location.clone(), &entry.name));
             self.entries.push(entry);
         }
         Err(unended(begin, "END_DATA"))
@@ -243,8 +245,11 @@ impl Spectral {
             header::wavelength_heading(name, '.').filter(|h| h.value >= LOWEST).map(|h| (at, h, place))
         });
         let all: Vec<_> = headings.collect();
-        let alike = |prefix: &str| all.iter().filter(|(_, h, _)| h.prefix == prefix).count();
-        let Some((_, best, _)) = all.iter().rev().max_by_key(|(_, h, _)| alike(&h.prefix)) else {
+        let mut alike: HashMap<&str, usize> = HashMap::new();
+        for (_, heading, _) in &all {
+            *alike.entry(&heading.prefix).or_default() += 1;
+        }
+        let Some((_, best, _)) = all.iter().rev().max_by_key(|(_, h, _)| alike[h.prefix.as_str()]) else {
             let place = table.fields.first().map(|(_, place)| place.clone()).unwrap_or_default();
             findings.push(Finding::info("S009", "a table without spectral fields was not read").at(place));
             return Ok(None);
@@ -257,7 +262,7 @@ impl Spectral {
             if columns.is_empty() {
                 begins = (*place).clone();
             }
-            axis.push(heading.value, (*place).clone())?;
+            axis.push(heading.value, place.line.unwrap_or_default(), || (*place).clone())?;
             columns.push(*at);
         }
         let unit =
@@ -280,7 +285,7 @@ impl Spectral {
         let mut values = Vec::with_capacity(self.columns.len());
         for column in &self.columns {
             let field = &fields[*column];
-            values.push(instrument::number(field.raw, decimal, line.place(field.start), "value")?);
+            values.push(instrument::number(field.raw, decimal, "value", || line.place(field.start))?);
         }
         if self.descends {
             values.reverse();
@@ -290,7 +295,7 @@ impl Spectral {
             Spectrum::density(Arc::clone(&self.grid), values).map_err(|e| Error::new(location.clone(), e))?;
         const NAMES: [&str; 4] = ["SAMPLE_NAME", "SAMPLENAME", "SAMPLE_ID", "SAMPLEID"];
         let name = NAMES.iter().find_map(|n| table.fields.iter().position(|(field, _)| field.eq_ignore_ascii_case(n)));
-        let others = (0..fields.len()).filter(|at| !self.columns.contains(at) && Some(*at) != name);
+        let others = (0..fields.len()).filter(|at| self.columns.binary_search(at).is_err() && Some(*at) != name);
         let metadata = others.map(|at| (table.fields[at].0.clone(), fields[at].text().into_owned())).collect();
         let name = name.map(|at| fields[at].text().into_owned()).unwrap_or_default();
         Ok(Entry { name, spectrum, quantity: None, unit: None, printed: Vec::new(), metadata, location })

@@ -9,7 +9,7 @@ use super::error::{Error, ErrorKind};
 use super::field::{Field, split};
 use super::header::{self, AxisUnit, UnitText, ValueHeading};
 use super::number::{self, Cell};
-use super::{Entry, ReadOptions};
+use super::{Entry, ReadOptions, item};
 use crate::finding::{Finding, Location};
 
 /// A value column while it is read; a missing cell is NaN, which no input can hold.
@@ -55,7 +55,8 @@ pub(super) fn read(
         Some(at) => Some(records[at]),
         None => comment.filter(|c| is_heading(*c, dialect, width)),
     };
-    let (mut axes, mut columns) = plan(heading, width, dialect, findings);
+    let first = records[head.data].place(0);
+    let (mut axes, mut columns) = plan(heading, first, width, dialect, findings);
     if let Some(at) = head.units {
         apply_units(&records[at], dialect, &mut axes, &mut columns)?;
     }
@@ -191,6 +192,7 @@ fn is_heading(comment: Record<'_>, dialect: Dialect, width: usize) -> bool {
 /// Which cells are wavelengths and which are values. A wavelength column governs the columns after it up to the next one.
 fn plan(
     heading: Option<Record<'_>>,
+    first: Location,
     width: usize,
     dialect: Dialect,
     findings: &mut Vec<Finding>,
@@ -199,27 +201,30 @@ fn plan(
     let mut columns = Vec::new();
     let new_axis = |cell, unit, place| AxisColumn { cell, unit, place, axis: Axis::default(), rows: Vec::new() };
     let Some(record) = heading else {
-        axes.push(new_axis(0, AxisUnit::NotStated, Location::default()));
+        axes.push(new_axis(0, AxisUnit::NotStated, first));
         let column = |cell| Column { cell, heading: ValueHeading::default(), axis: 0, values: Vec::new() };
         return (axes, (1..width).map(column).collect());
     };
     let fields: Vec<_> = split(record.text, dialect.separator).collect();
     let place = |field: &Field<'_>| record.place(field.start);
-    for (cell, field) in fields.iter().enumerate() {
-        if let Some(unit) = header::axis(&field.text()) {
-            axes.push(new_axis(cell, unit, place(field)));
-        }
+    let units: Vec<Option<AxisUnit>> = fields.iter().map(|f| header::axis(&f.text())).collect();
+    // A lone wavelength column at the end governs the columns before it; without any, the first column is one.
+    let lone_last = units.iter().rposition(Option::is_some) == Some(fields.len() - 1)
+        && units.iter().filter(|u| u.is_some()).count() == 1;
+    if lone_last || units.iter().all(Option::is_none) {
+        let cell = if lone_last { fields.len() - 1 } else { 0 };
+        axes.push(new_axis(cell, units[cell].clone().unwrap_or(AxisUnit::NotStated), place(&fields[cell])));
     }
-    if axes.is_empty() {
-        axes.push(new_axis(0, AxisUnit::NotStated, place(&fields[0])));
-    }
-    // A lone wavelength column at the end governs the columns before it.
-    let last = axes.len() == 1 && axes[0].cell + 1 == fields.len();
-    for (cell, field) in fields.iter().enumerate() {
-        if axes.iter().any(|a| a.cell == cell) {
+    let lone = !axes.is_empty();
+    for (cell, (field, unit)) in fields.iter().zip(units).enumerate() {
+        if lone && cell == axes[0].cell {
             continue;
         }
-        let Some(axis) = axes.iter().rposition(|a| a.cell < cell).or(last.then_some(0)) else {
+        if let Some(unit) = unit {
+            axes.push(new_axis(cell, unit, place(field)));
+            continue;
+        }
+        let Some(axis) = axes.len().checked_sub(1) else {
             let message = format!("the column `{}` before the wavelengths was not read", field.text());
             findings.push(Finding::info("S009", message).at(place(field)));
             continue;
@@ -241,25 +246,25 @@ fn apply_units(
     axes: &mut [AxisColumn],
     columns: &mut [Column],
 ) -> Result<(), Error> {
-    for (cell, field) in split(record.text, dialect.separator).enumerate() {
-        let text = field.text();
-        if let Some(axis) = axes.iter_mut().find(|a| a.cell == cell) {
-            let stated = header::axis(&text).unwrap_or(AxisUnit::NotStated);
-            if let (AxisUnit::Stated(above), AxisUnit::Stated(here)) = (&axis.unit, &stated)
-                && above != here
-            {
-                let found = format!("wavelengths in {} under a heading in {}", here.symbol(), above.symbol());
-                return Err(record.error(field.start, ErrorKind::Ambiguous { found }));
-            }
-            if stated != AxisUnit::NotStated {
-                axis.unit = stated;
-            }
-        } else if let Some(column) = columns.iter_mut().find(|c| c.cell == cell) {
-            match header::unit(&text) {
-                UnitText::Unit(unit) => column.heading.unit = Some(unit),
-                UnitText::Dimensionless => column.heading.quantity = Some(Quantity::Relative),
-                UnitText::Other => {}
-            }
+    let fields: Vec<_> = split(record.text, dialect.separator).collect();
+    for axis in axes {
+        let Some(field) = fields.get(axis.cell) else { continue };
+        let stated = header::axis(&field.text()).unwrap_or(AxisUnit::NotStated);
+        if let (AxisUnit::Stated(above), AxisUnit::Stated(here)) = (&axis.unit, &stated)
+            && above != here
+        {
+            let found = format!("wavelengths in {} under a heading in {}", here.symbol(), above.symbol());
+            return Err(record.error(field.start, ErrorKind::Ambiguous { found }));
+        }
+        if stated != AxisUnit::NotStated {
+            axis.unit = stated;
+        }
+    }
+    for column in columns {
+        match fields.get(column.cell).map(|f| header::unit(&f.text())) {
+            Some(UnitText::Unit(unit)) => column.heading.unit = Some(unit),
+            Some(UnitText::Dimensionless) => column.heading.quantity = Some(Quantity::Relative),
+            Some(UnitText::Other) | None => {}
         }
     }
     Ok(())
@@ -294,7 +299,7 @@ fn read_record(
         };
         match number::parse(field.raw, dialect.decimal) {
             Cell::Number(value) => {
-                axis.axis.push(value, record.place(field.start))?;
+                axis.axis.push(value, record.line, || record.place(field.start))?;
                 axis.rows.push(index);
                 *has_row = true;
             }
@@ -409,7 +414,7 @@ impl Assembly<'_, '_> {
                 values.len()
             );
             let line = self.records[axis.rows[if first > 0 { 0 } else { end }]].line;
-            self.findings.push(Finding::warning("S004", message).at(Location::line(line).of_item(name)));
+            self.findings.push(Finding::warning("S004", message).at(item(Location::line(line), name)));
         }
         Ok(Some(first..end))
     }

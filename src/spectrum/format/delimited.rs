@@ -8,11 +8,11 @@ use super::super::{Quantity, SpectralUnit};
 use super::columns;
 use super::dialect::{self, Dialect, Lines, Record};
 use super::error::{Error, ErrorKind};
-use super::field::split;
+use super::field::{Separator, split};
 use super::header::{self, UnitText};
 use super::layout;
 use super::rows::{Negatives, RowTable};
-use super::{Entry, Format, ReadOptions, SpectrumFile, printed};
+use super::{Entry, Format, ReadOptions, SpectrumFile, item, printed};
 use crate::finding::{Checked, Finding, Location};
 
 /// A table of rows as its first lines tell it.
@@ -26,8 +26,8 @@ pub(super) struct Head {
 
 /// A text sorted into records, with its dialect.
 struct Table<'a> {
+    text: &'a str,
     lines: Lines<'a>,
-    records: Vec<Record<'a>>,
     dialect: Dialect,
 }
 
@@ -38,25 +38,23 @@ impl<'a> Table<'a> {
             return Err(Error::whole(ErrorKind::Empty));
         }
         let dialect = Dialect::find(&lines.records, lines.declared, options)?;
-        let records = dialect::join_quoted(text, &lines.records, dialect.separator)?;
-        Ok(Self { lines, records, dialect })
+        Ok(Self { text, lines, dialect })
     }
 
-    /// Facts above the table: lines before `end` but for those at `skip`, and all comments.
-    fn metadata(&self, end: usize, skip: [Option<usize>; 2]) -> Vec<(String, String)> {
+    /// Facts above the table, and all comments.
+    fn metadata<'r>(&self, above: impl Iterator<Item = &'r Record<'r>>) -> Vec<(String, String)> {
         let mut facts = Vec::new();
         for (comment, _) in &self.lines.comments {
             facts.extend(fact(comment.text));
         }
-        for (at, record) in self.records[..end].iter().enumerate() {
-            if skip.contains(&Some(at)) {
-                continue;
-            }
+        for record in above {
             let cells: Vec<String> =
                 split(record.text, self.dialect.separator).map(|f| f.text().into_owned()).collect();
             match &cells[..] {
-                [key, rest @ ..] if !rest.is_empty() && !rest[0].is_empty() && !key.contains(": ") => {
-                    facts.push((key.trim_end_matches(':').to_owned(), rest.join(" ").trim().to_owned()));
+                [key, value, ..]
+                    if self.dialect.separator != Separator::Blanks && !value.is_empty() && !key.contains(": ") =>
+                {
+                    facts.push((key.trim_end_matches(':').to_owned(), cells[1..].join(" ").trim().to_owned()));
                 }
                 _ => facts.extend(fact(record.text)),
             }
@@ -76,42 +74,47 @@ fn fact(line: &str) -> Option<(String, String)> {
 }
 
 /// What a fact above the table states for all of its spectra.
-fn stated(metadata: &[(String, String)]) -> (Option<Quantity>, Option<SpectralUnit>) {
+fn stated(metadata: &[(String, String)], findings: &mut Vec<Finding>) -> (Option<Quantity>, Option<SpectralUnit>) {
     let value = |keys: &[&str]| {
         metadata.iter().find(|(key, _)| keys.contains(&key.to_lowercase().as_str())).map(|(_, value)| value.as_str())
     };
-    let unit = match value(&["unit", "units", "value unit", "spectral unit"]).map(header::unit) {
-        Some(UnitText::Unit(unit)) => Some(unit),
-        _ => None,
-    };
     let quantity = value(&["quantity", "spectral quantity"]).and_then(|q| q.parse().ok());
-    (quantity, unit)
+    let Some(text) = value(&["unit", "units", "value unit", "spectral unit"]) else { return (quantity, None) };
+    match header::unit(text) {
+        UnitText::Unit(unit) => (quantity, Some(unit)),
+        UnitText::Dimensionless => (quantity.or(Some(Quantity::Relative)), None),
+        UnitText::Other => {
+            let message = format!("`{text}` is no unit of a spectrum that is understood here");
+            findings.push(Finding::warning("S006", message).hint("say the unit with --unit"));
+            (quantity, None)
+        }
+    }
 }
 
 /// Reads the heading of a table of rows from the beginning of its text; `None` for a table of columns.
 pub(super) fn head(text: &str, options: &ReadOptions) -> Result<Option<Head>, Error> {
     let table = Table::new(text, options)?;
-    let Some(heading) = layout::rows(&table.records, table.dialect, options)? else { return Ok(None) };
+    let Some(heading) = layout::rows(&table.lines.records, table.dialect, options)? else { return Ok(None) };
     Ok(Some(table.head(heading, options)?))
 }
 
 impl Table<'_> {
     fn head(&self, heading: layout::RowHeading, options: &ReadOptions) -> Result<Head, Error> {
         let mut findings = Vec::new();
-        let metadata = self.metadata(heading.index, [None, None]);
-        let record = self.records[heading.index];
+        let metadata = self.metadata(self.lines.records[..heading.index].iter());
+        let record = self.lines.records[heading.index];
         let mut table = RowTable::new(heading, &record, self.dialect, options, &mut findings)?;
-        let (quantity, unit) = stated(&metadata);
+        let (quantity, unit) = stated(&metadata, &mut findings);
         table.quantity = table.quantity.or(quantity);
         table.unit = table.unit.or(unit);
-        Ok(Head { table, metadata, findings, line: record.line + record.text.matches('\n').count() as u64 })
+        Ok(Head { table, metadata, findings, line: record.line })
     }
 }
 
 /// Reads a whole table.
 pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<SpectrumFile>, Error> {
     let table = Table::new(text, options)?;
-    match layout::rows(&table.records, table.dialect, options)? {
+    match layout::rows(&table.lines.records, table.dialect, options)? {
         Some(heading) => read_rows(&table, heading, options),
         None => read_columns(&table, options),
     }
@@ -124,12 +127,12 @@ fn read_rows(
 ) -> Result<Checked<SpectrumFile>, Error> {
     let first = heading.index + 1;
     let Head { table: rows, metadata, mut findings, .. } = table.head(heading, options)?;
-    let mut entries = Vec::with_capacity(table.records.len() - first);
+    let mut entries = Vec::with_capacity(table.lines.records.len() - first);
     let mut negatives = Negatives::default();
-    for record in &table.records[first..] {
+    for record in &table.lines.records[first..] {
         let row = rows.read(*record)?;
         let location = Location::line(row.line);
-        negatives.add(&row.values, || location.clone().of_item(&row.name));
+        negatives.add(&row.values, || item(location.clone(), &row.name));
         let spectrum = Spectrum::density(rows.grid.clone(), row.values).map_err(|e| Error::new(location.clone(), e))?;
         entries.push(Entry {
             name: row.name,
@@ -143,7 +146,7 @@ fn read_rows(
     }
     if entries.is_empty() {
         let expected = "rows of values below the heading of wavelengths";
-        return Err(Error::at(table.records[first - 1].line, 1, ErrorKind::NoSpectrum { expected }));
+        return Err(Error::at(table.lines.records[first - 1].line, 1, ErrorKind::NoSpectrum { expected }));
     }
     findings.extend(negatives.finding());
     Ok(Checked { value: SpectrumFile { format: Format::Delimited, entries, metadata }, findings })
@@ -153,9 +156,11 @@ fn read_columns(table: &Table<'_>, options: &ReadOptions) -> Result<Checked<Spec
     let mut findings = Vec::new();
     // A comment right above the first record may be the heading of a table without another.
     let comment = table.lines.comments.iter().rev().find(|(_, before)| *before == 0).map(|(record, _)| *record);
-    let (mut entries, head) = columns::read(&table.records, table.dialect, comment, options, &mut findings)?;
-    let metadata = table.metadata(head.data, [head.heading, head.units]);
-    let (quantity, unit) = stated(&metadata);
+    let records = dialect::join_quoted(table.text, &table.lines.records, table.dialect.separator)?;
+    let (mut entries, head) = columns::read(&records, table.dialect, comment, options, &mut findings)?;
+    let above = (0..head.data).filter(|at| Some(*at) != head.heading && Some(*at) != head.units);
+    let metadata = table.metadata(above.map(|at| &records[at]));
+    let (quantity, unit) = stated(&metadata, &mut findings);
     // Figures above a table of several spectra belong to nobody knows which.
     let alone = entries.len() == 1;
     for entry in &mut entries {
@@ -165,7 +170,7 @@ fn read_columns(table: &Table<'_>, options: &ReadOptions) -> Result<Checked<Spec
             entry.printed = metadata.iter().filter_map(|(label, text)| printed::known_figure(label, text)).collect();
         }
         let mut negatives = Negatives::default();
-        negatives.add(entry.spectrum.values(), || entry.location.clone().of_item(&entry.name));
+        negatives.add(entry.spectrum.values(), || item(entry.location.clone(), &entry.name));
         findings.extend(negatives.finding());
     }
     Ok(Checked { value: SpectrumFile { format: Format::Delimited, entries, metadata }, findings })

@@ -7,6 +7,18 @@ use std::io;
 use super::super::UnitError;
 use crate::finding::Location;
 
+fn shown(cell: &str) -> Cow<'static, str> {
+    if cell.is_empty() { "an empty cell".into() } else { format!("`{cell}`").into() }
+}
+
+fn spectrum(name: &str) -> Cow<'static, str> {
+    if name.is_empty() { "a spectrum".into() } else { format!("`{name}`").into() }
+}
+
+fn cells(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "cell" } else { "cells" })
+}
+
 /// What is wrong with an input; the text says what was found and what was expected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -51,7 +63,7 @@ pub enum ErrorKind {
         expected: String,
     },
     /// A cell is not a number.
-    #[error("found `{found}`; expected a number for the {what}")]
+    #[error("found {}; expected a number for the {what}", shown(found))]
     NotANumber {
         /// The cell.
         found: String,
@@ -59,7 +71,7 @@ pub enum ErrorKind {
         what: &'static str,
     },
     /// NaN or infinity.
-    #[error("found `{found}`; expected a finite number for the {what}")]
+    #[error("found {}; expected a finite number for the {what}", shown(found))]
     NotFinite {
         /// The cell.
         found: String,
@@ -67,7 +79,7 @@ pub enum ErrorKind {
         what: &'static str,
     },
     /// An empty cell (or `NA`, `-`) between two values of one spectrum.
-    #[error("found `{found}` between values of `{name}`; expected a number")]
+    #[error("found {} between values of {}; expected a number", shown(found), spectrum(name))]
     MissingValue {
         /// The cell.
         found: String,
@@ -75,7 +87,7 @@ pub enum ErrorKind {
         name: String,
     },
     /// Too few cells in a row.
-    #[error("found {found} cells; expected {expected}")]
+    #[error("found {}; expected {expected}", cells(*found))]
     MissingColumn {
         /// Cells met.
         found: usize,
@@ -83,7 +95,7 @@ pub enum ErrorKind {
         expected: usize,
     },
     /// Too many cells in a row.
-    #[error("found {found} cells; expected {expected}")]
+    #[error("found {}; expected {expected}", cells(*found))]
     TooManyColumns {
         /// Cells met.
         found: usize,
@@ -139,7 +151,7 @@ pub enum ErrorKind {
         asked: super::Quantity,
     },
     /// A count stated in the file is not the count met.
-    #[error("found {found} {what}; expected {stated} as the file states")]
+    #[error("found {found} as the count of {what}; expected {stated} as the file states")]
     CountMismatch {
         /// What is counted.
         what: &'static str,

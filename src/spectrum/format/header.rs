@@ -88,7 +88,7 @@ pub(super) fn axis(text: &str) -> Option<AxisUnit> {
     }
     // `Wavelength range` and `Wavelength step (nm)` head no axis: what follows has to be a unit, or stand where one would.
     let marked = rest.trim_start().starts_with(['[', '(', '/', '_', ',']);
-    let unit = rest.trim_matches(['[', ']', '(', ')', '/', '_', ',', ' ']);
+    let unit = rest.trim_matches(|c: char| c.is_whitespace() || matches!(c, '[' | ']' | '(' | ')' | '/' | '_' | ','));
     let unit = unit.strip_prefix("in ").unwrap_or(unit);
     match unit {
         "" | "air" | "vacuum" | "vac" => Some(AxisUnit::NotStated),
@@ -111,7 +111,8 @@ pub(super) struct ValueHeading {
 
 /// Reads the heading of a value column: `lamp 1`, `spectral irradiance [W/m2/nm]`, `Radiance (W/sr/m2/nm)`, `E / W m-2 nm-1`.
 pub(super) fn value(text: &str) -> ValueHeading {
-    let text = text.trim();
+    // Headings of spreadsheets may run over lines.
+    let text = &text.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut heading = ValueHeading { name: text.to_owned(), quantity: quantity(text), ..ValueHeading::default() };
     if let Some((stem, inside, square)) = bracketed(text) {
         match unit(inside) {

@@ -91,23 +91,31 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    pub(super) fn push(&mut self, wavelength: f64, value: f64, place: Location) -> Result<(), Error> {
+    /// Adds a sample on a line; `place` is asked for the first one and for an error.
+    pub(super) fn push(
+        &mut self,
+        wavelength: f64,
+        value: f64,
+        line: u64,
+        place: impl Fn() -> Location,
+    ) -> Result<(), Error> {
         if self.values.is_empty() {
-            self.place = place.clone();
+            self.place = place();
         }
-        self.axis.push(wavelength, place)?;
+        self.axis.push(wavelength, line, place)?;
         self.values.push(value);
         Ok(())
     }
 
-    /// The spectrum, its wavelengths in nm and ascending.
+    /// The spectrum, its wavelengths in nm and ascending; `units` is where their unit stands.
     pub(super) fn spectrum(
         mut self,
         stated: &AxisUnit,
+        units: &Location,
         options: &ReadOptions,
         findings: &mut Vec<Finding>,
     ) -> Result<Spectrum, Error> {
-        let unit = axis::unit(stated, options.wavelength_unit, &self.place, findings)?;
+        let unit = axis::unit(stated, options.wavelength_unit, units, findings)?;
         if self.axis.descends() {
             self.values.reverse();
             findings.push(axis::reversed(self.place.clone()));
@@ -121,17 +129,22 @@ impl Samples {
 
     /// [`Samples::spectrum`] with wavelengths in nm, by format.
     pub(super) fn in_nm(self, options: &ReadOptions, findings: &mut Vec<Finding>) -> Result<Spectrum, Error> {
-        self.spectrum(&AxisUnit::Stated(WavelengthUnit::Nanometre), options, findings)
+        let place = self.place.clone();
+        self.spectrum(&AxisUnit::Stated(WavelengthUnit::Nanometre), &place, options, findings)
     }
 }
 
 /// A finite number, or the error that there is none.
-pub(super) fn number(text: &str, decimal: char, place: Location, what: &'static str) -> Result<f64, Error> {
-    let found = text.to_owned();
+pub(super) fn number(
+    text: &str,
+    decimal: char,
+    what: &'static str,
+    place: impl FnOnce() -> Location,
+) -> Result<f64, Error> {
     match number::parse(text, decimal) {
         Cell::Number(value) => Ok(value),
-        Cell::NotFinite => Err(Error::new(place, ErrorKind::NotFinite { found, what })),
-        Cell::Missing | Cell::Text => Err(Error::new(place, ErrorKind::NotANumber { found, what })),
+        Cell::NotFinite => Err(Error::new(place(), ErrorKind::NotFinite { found: text.to_owned(), what })),
+        Cell::Missing | Cell::Text => Err(Error::new(place(), ErrorKind::NotANumber { found: text.to_owned(), what })),
     }
 }
 

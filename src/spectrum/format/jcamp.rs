@@ -5,7 +5,7 @@
 //! in no stated unit nobody can tell, and they are refused.
 
 use super::super::{Per, Quantity, SpectralUnit, WavelengthUnit};
-use super::asdf::{self, Line};
+use super::asdf::{self, Line, Point};
 use super::error::{Error, ErrorKind};
 use super::header::{self, AxisUnit, UnitText};
 use super::instrument::{self, Samples};
@@ -19,8 +19,8 @@ pub(super) fn matches(head: &str) -> bool {
     first.is_some_and(|line| line.starts_with("##") && line.contains('='))
 }
 
-/// Points where the file states no count.
-const MOST_POINTS: u64 = 50_000_000;
+/// Points at most, whatever count the file states: compressed tables claim many in few bytes.
+const MOST_POINTS: u64 = 10_000_000;
 
 /// A labelled data record.
 struct Record<'a> {
@@ -97,13 +97,6 @@ struct Block<'a> {
     options: &'a ReadOptions,
 }
 
-/// A point with its place.
-struct Point {
-    x: f64,
-    y: f64,
-    place: Location,
-}
-
 /// What an axis in wavenumbers does to the values.
 enum Values {
     AsTheyAre,
@@ -117,7 +110,7 @@ impl Block<'_> {
 
     fn number(&self, label: &str) -> Result<Option<f64>, Error> {
         let Some(record) = self.get(label) else { return Ok(None) };
-        instrument::number(record.value, '.', record.place.clone(), "record").map(Some)
+        instrument::number(record.value, '.', "record", || record.place.clone()).map(Some)
     }
 
     fn factor(&self, label: &str) -> Result<f64, Error> {
@@ -135,14 +128,20 @@ impl Block<'_> {
     fn count(&self) -> Result<Option<u64>, Error> {
         let Some(record) = self.get("NPOINTS") else { return Ok(None) };
         let kind = || ErrorKind::NotANumber { found: record.value.to_owned(), what: "count" };
-        record.value.parse().map(Some).map_err(|_| Error::new(record.place.clone(), kind()))
+        let count = record.value.parse().map_err(|_| Error::new(record.place.clone(), kind()))?;
+        if count > MOST_POINTS {
+            let found = format!("{count} points");
+            let kind = ErrorKind::Unexpected { found, expected: format!("at most {MOST_POINTS}") };
+            return Err(Error::new(record.place.clone(), kind));
+        }
+        Ok(Some(count))
     }
 
     fn entry(&self, findings: &mut Vec<Finding>) -> Result<Entry, Error> {
         let mut points = self.points()?;
         let found = points.len() as u64;
         if let Some(stated) = self.count()?.filter(|stated| *stated != found) {
-            let place = points.last().map_or(self.data.place.clone(), |p| p.place.clone());
+            let place = points.last().map_or(self.data.place.clone(), Point::place);
             return Err(Error::new(place, ErrorKind::CountMismatch { what: "points", stated, found }));
         }
         self.check_figures(&points, findings)?;
@@ -169,12 +168,13 @@ impl Block<'_> {
         };
         let mut samples = Samples::default();
         for point in points {
-            samples.push(point.x, point.y, point.place)?;
+            samples.push(point.x, point.y, point.line, || point.place())?;
         }
         if samples.values.is_empty() {
             return Err(Error::new(self.data.place.clone(), ErrorKind::NoSpectrum { expected: "points in the table" }));
         }
-        let spectrum = samples.spectrum(&stated, self.options, findings)?;
+        let units = self.get("XUNITS").map_or_else(|| samples.place.clone(), |r| r.place.clone());
+        let spectrum = samples.spectrum(&stated, &units, self.options, findings)?;
         let others =
             self.records.iter().filter(|r| !matches!(r.label.as_str(), "XYDATA" | "XYPOINTS" | "TITLE" | "END"));
         let metadata = others.map(|r| {
@@ -199,14 +199,8 @@ impl Block<'_> {
         match (self.data.label.as_str(), form.to_uppercase().as_str()) {
             ("XYPOINTS", "(XY..XY)") => {
                 let pairs = asdf::pairs(&self.data.lines, most)?;
-                let texts = &self.data.lines;
-                Ok(pairs
-                    .into_iter()
-                    .map(|(line, byte, x, y)| {
-                        let text = texts.iter().find(|l| l.number == line).map_or("", |l| l.text);
-                        Point { x: x * x_factor, y: y * y_factor, place: place(text, line, byte) }
-                    })
-                    .collect())
+                let scaled = |p: Point| Point { x: p.x * x_factor, y: p.y * y_factor, ..p };
+                Ok(pairs.into_iter().map(scaled).collect())
             }
             ("XYDATA", "(X++(Y..Y))") => self.evenly_spaced(most, x_factor, y_factor),
             (label, _) => {
@@ -220,8 +214,8 @@ impl Block<'_> {
     fn evenly_spaced(&self, most: u64, x_factor: f64, y_factor: f64) -> Result<Vec<Point>, Error> {
         let table = asdf::ordinates(&self.data.lines, most)?;
         let count = table.values.len();
-        let Some(&(_, start, _)) = table.abscissas.first() else { return Ok(Vec::new()) };
-        let first = self.number("FIRSTX")?.unwrap_or(start * x_factor);
+        let Some(start) = table.abscissas.first() else { return Ok(Vec::new()) };
+        let first = self.number("FIRSTX")?.unwrap_or(start.value * x_factor);
         let step = match (self.number("LASTX")?, self.number("DELTAX")?) {
             // The stated count, not the one met: a table cut short must not be stretched.
             (Some(last), _) if count > 1 => (last - first) / (self.count()?.unwrap_or(count as u64) as f64 - 1.0),
@@ -236,16 +230,19 @@ impl Block<'_> {
             _ => 0.0,
         };
         let x = |index: usize| first + step * index as f64;
-        for &(index, abscissa, line) in &table.abscissas {
-            let found = abscissa * x_factor;
+        for abscissa in &table.abscissas {
+            let found = abscissa.value * x_factor;
             // Abscissas in the table are rounded; half a step tells a point too many or too few.
-            if count > 1 && (found - x(index)).abs() > 0.5 * step.abs() {
-                let kind = ErrorKind::CheckMismatch { what: "abscissa", found, expected: x(index) };
-                return Err(Error::at(line, 1, kind).with_hint("an ordinate is missing or too many on the line before"));
+            let tolerance = (0.5 * step.abs()).max(0.5 * abscissa.digit * x_factor.abs());
+            let fits = |index| (found - x(index)).abs() <= tolerance;
+            if count > 1 && !fits(abscissa.index) && !(abscissa.checked && fits(abscissa.index + 1)) {
+                let kind = ErrorKind::CheckMismatch { what: "abscissa", found, expected: x(abscissa.index) };
+                let error = Error::at(abscissa.line, abscissa.column, kind);
+                return Err(error.with_hint("an ordinate is missing or too many on the lines before"));
             }
         }
         let points = table.values.iter().zip(&table.lines).enumerate();
-        Ok(points.map(|(i, (y, line))| Point { x: x(i), y: y * y_factor, place: Location::at(*line, 1) }).collect())
+        Ok(points.map(|(i, (y, line))| Point { x: x(i), y: y * y_factor, line: *line, column: 1 }).collect())
     }
 
     /// The first, largest and smallest value that the file states.
@@ -256,7 +253,7 @@ impl Block<'_> {
             [("FIRSTY", values().next()), ("MAXY", values().reduce(f64::max)), ("MINY", values().reduce(f64::min))];
         for (label, found) in figures {
             let (Some(record), Some(found)) = (self.get(label), found) else { continue };
-            let stated = instrument::number(record.value, '.', record.place.clone(), "record")?;
+            let stated = instrument::number(record.value, '.', "record", || record.place.clone())?;
             if (stated - found).abs() > (1e-3 * stated.abs().max(found.abs())).max(resolution) {
                 let message = format!("##{label} is {stated}, the table has {found}");
                 findings.push(Finding::warning("S017", message).at(record.place.clone()));
@@ -317,7 +314,7 @@ impl Block<'_> {
         for point in &mut *points {
             let wavenumber = point.x;
             if wavenumber <= 0.0 {
-                return Err(Error::new(point.place.clone(), ErrorKind::NotPositive { found: wavenumber }));
+                return Err(Error::new(point.place(), ErrorKind::NotPositive { found: wavenumber }));
             }
             point.x = 1e7 / wavenumber;
             if matches!(values, Values::PerWavenumber) {

@@ -7,6 +7,8 @@
 //! as `wavelength` heads the column below it, so that `wavelength,3000,4000,5000` over 380, 381 … holds columns named by
 //! numbers.
 
+use std::collections::HashMap;
+
 use super::super::WavelengthUnit;
 use super::axis::{self, Axis};
 use super::dialect::{Dialect, Record};
@@ -15,6 +17,7 @@ use super::field::split;
 use super::header::{self, WavelengthHeading};
 use super::number::{self, Cell};
 use super::{Layout, ReadOptions};
+use crate::finding::Location;
 
 /// Records among which a heading is looked for.
 const PREAMBLE: usize = 400;
@@ -109,15 +112,12 @@ impl Candidate {
             cells += 1;
         }
         // Headings alike but for the number; the largest such group, of equal ones the first.
-        let mut kinds: Vec<((&str, Option<WavelengthUnit>), usize)> = Vec::new();
+        let mut counts: HashMap<(&str, Option<WavelengthUnit>), usize> = HashMap::new();
         for (_, _, h) in &all {
-            match kinds.iter_mut().find(|(kind, _)| *kind == (h.prefix.as_str(), h.unit)) {
-                Some((_, count)) => *count += 1,
-                None => kinds.push(((&h.prefix, h.unit), 1)),
-            }
+            *counts.entry((&h.prefix, h.unit)).or_default() += 1;
         }
-        let best =
-            kinds.iter().rev().max_by_key(|(_, count)| *count).map(|((prefix, unit), _)| (prefix.to_string(), *unit));
+        let best = all.iter().rev().max_by_key(|(_, _, h)| counts[&(h.prefix.as_str(), h.unit)]);
+        let best = best.map(|(_, _, h)| (h.prefix.clone(), h.unit));
         let (group, rest): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|(_, _, h)| best.as_ref().is_some_and(|(p, u)| *p == h.prefix && *u == h.unit));
         others.extend(rest.into_iter().map(|(cell, _, h)| (cell, format!("{}{}", h.prefix, h.value))));
@@ -172,7 +172,7 @@ impl Candidate {
         for record in records[self.index..].iter().take(LABELS) {
             let value = split(record.text, self.dialect.separator).next();
             let value = value.and_then(|f| number::parse(f.raw, self.dialect.decimal).number());
-            if value.is_none_or(|v| column.push(v, Default::default()).is_err()) {
+            if value.is_none_or(|v| column.push(v, record.line, Location::default).is_err()) {
                 return Ok(Verdict::Rows);
             }
         }
@@ -208,7 +208,8 @@ impl Candidate {
             let Some(field) = split(record.text, self.dialect.separator).nth(cell) else { continue };
             match number::parse(field.raw, self.dialect.decimal) {
                 Cell::Number(value) => {
-                    ordered &= axis::is_plausible_nm(value) && labels.push(value, Default::default()).is_ok();
+                    ordered &=
+                        axis::is_plausible_nm(value) && labels.push(value, record.line, Location::default).is_ok();
                 }
                 _ => return (false, false),
             }
@@ -226,7 +227,7 @@ impl Candidate {
     fn heading(&self, record: &Record<'_>) -> Result<RowHeading, Error> {
         let mut axis = Axis::default();
         for (_, start, heading) in &self.group {
-            axis.push(heading.value, record.place(*start))?;
+            axis.push(heading.value, record.line, || record.place(*start))?;
         }
         const NAMES: [&str; 6] = ["name", "sample_name", "label", "title", "sample", "id"];
         let named = NAMES.iter().find_map(|name| self.others.iter().find(|(_, text)| text.eq_ignore_ascii_case(name)));

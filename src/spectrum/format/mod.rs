@@ -223,6 +223,11 @@ pub struct ReadOptions {
     pub layout: Option<Layout>,
 }
 
+/// A place, with the name of the spectrum where it has one.
+fn item(place: Location, name: &str) -> Location {
+    if name.is_empty() { place } else { place.of_item(name) }
+}
+
 /// Bytes in which the format is looked for.
 const DETECTION: usize = 64 * 1024;
 

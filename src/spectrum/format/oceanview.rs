@@ -11,7 +11,10 @@ use super::header::{self, AxisUnit, UnitText};
 use super::instrument::{self, Samples};
 use super::text::place;
 use super::{Entry, Format, ReadOptions, SpectrumFile};
-use crate::finding::Checked;
+use crate::finding::{Checked, Location};
+
+/// The key that says what the axis holds.
+const X_AXIS: &str = "XAxis mode";
 
 fn is_begin(line: &str) -> bool {
     line.contains(">>>>>Begin")
@@ -61,7 +64,8 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<Spectrum
     }
     let mut findings = Vec::new();
     let location = samples.place.clone();
-    let spectrum = samples.spectrum(&axis_unit(&metadata), options, &mut findings)?;
+    let units = text.lines().position(|line| line.contains(X_AXIS)).map_or(1, |line| line as u64 + 1);
+    let spectrum = samples.spectrum(&axis_unit(&metadata), &Location::at(units, 1), options, &mut findings)?;
     let (quantity, unit) = y_axis(&metadata);
     let name = metadata.iter().find(|(key, _)| key == "Data from").map(|(_, name)| name.clone()).unwrap_or_default();
     let entry = Entry { name, spectrum, quantity, unit, printed: Vec::new(), metadata, location };
@@ -84,10 +88,10 @@ fn samples(body: &[(u64, &str)], options: &ReadOptions) -> Result<Samples, Error
         let at = |byte| place(line, *number, byte);
         match &fields[..] {
             [wavelength, value] => {
-                let start = at(wavelength.start);
-                let nm = instrument::number(wavelength.raw, decimal, start.clone(), "wavelength")?;
-                let value = instrument::number(value.raw, decimal, at(value.start), "value")?;
-                samples.push(nm, value, start)?;
+                let start = || at(wavelength.start);
+                let nm = instrument::number(wavelength.raw, decimal, "wavelength", start)?;
+                let value = instrument::number(value.raw, decimal, "value", || at(value.start))?;
+                samples.push(nm, value, *number, start)?;
             }
             [_, _, third, ..] => {
                 return Err(Error::new(
@@ -108,7 +112,7 @@ fn pixels(metadata: &[(String, String)]) -> Option<u64> {
 
 /// Wavelengths are in nm, unless the file says that the axis holds something else.
 fn axis_unit(metadata: &[(String, String)]) -> AxisUnit {
-    match metadata.iter().find(|(key, _)| key.eq_ignore_ascii_case("XAxis mode")) {
+    match metadata.iter().find(|(key, _)| key == X_AXIS) {
         Some((_, mode)) if !mode.to_lowercase().starts_with("wavelength") => AxisUnit::Unknown(mode.clone()),
         _ => AxisUnit::Stated(WavelengthUnit::Nanometre),
     }

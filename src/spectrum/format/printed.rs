@@ -12,9 +12,10 @@ pub(super) fn figure(label: &str, text: &str) -> Option<Printed> {
     Some(Printed { key, label: label.trim().to_owned(), value, text: text.to_owned() })
 }
 
-/// Like [`figure`], for files of which nobody knows that they are an instrument's: only labels that we have a key for.
+/// Like [`figure`], for files of which nobody knows that they are an instrument's: only labels that we have a key for, and no
+/// single letters, which may stand for anything.
 pub(super) fn known_figure(label: &str, text: &str) -> Option<Printed> {
-    figure(label, text).filter(|printed| !printed.key.is_empty())
+    figure(label, text).filter(|printed| !printed.key.is_empty() && label.trim().len() > 1)
 }
 
 /// The label without unit brackets and blanks at its ends, single-spaced.

@@ -1,21 +1,11 @@
 //! From the file's numbers to SI per nanometre: what the file states, and the user's word.
-//!
-//! | file states | user says | result |
-//! |---|---|---|
-//! | unit | nothing | that unit, and its quantity |
-//! | unit | quantity of the same dimensions | that quantity (irradiance and exitance share a unit) |
-//! | unit | quantity of other dimensions | refused |
-//! | anything | unit | the user's unit, S013 where it differs |
-//! | no unit | quantity | SI per nm of that quantity, S014 |
-//! | no unit | nothing | relative, S010 |
-//! | anything | relative | relative |
 
 use std::sync::Arc;
 
 use super::super::quantity::UnitError;
 use super::super::{Grid, Per, Quantity, Sampling, SpectralUnit, Spectrum};
 use super::error::{Error, ErrorKind};
-use super::{Entry, Measured};
+use super::{Entry, Measured, item};
 use crate::finding::{Checked, Finding, Location};
 
 /// How the samples of a file become SI per nm: worked out once, applied to each spectrum of the same file.
@@ -60,6 +50,11 @@ impl Scale {
             && !same(file, user)
         {
             note(Finding::warning("S013", format!("read in {} as asked; the file states {}", user.text, file.text)));
+        }
+        if let (Some(file), Some(user)) = (stated.0, asked.0)
+            && file != user
+        {
+            note(Finding::warning("S013", format!("read as {user} as asked; the file states {file}")));
         }
         let chosen = asked.1.or(stated.1).cloned();
         let (quantity, unit) = match (asked.0, chosen) {
@@ -142,14 +137,22 @@ fn fit(unit: SpectralUnit, quantity: Quantity, by_user: bool, location: &Locatio
 }
 
 impl Entry {
-    /// This entry in SI per nm, with the user's `quantity` and `unit` where given; the [module](self) has the rules. The grid
-    /// stays shared.
+    /// This entry in SI per nm; the grid stays shared.
+    ///
+    /// | file states | user says | result |
+    /// |---|---|---|
+    /// | unit | nothing | that unit, and its quantity |
+    /// | unit | quantity of the same dimensions | that quantity (irradiance and exitance share a unit) |
+    /// | unit | quantity of other dimensions | refused |
+    /// | anything | unit | the user's unit, S013 where it differs |
+    /// | no unit | quantity | SI per nm of that quantity, S014 |
+    /// | no unit | nothing | relative, S010 |
+    /// | anything | relative | relative |
     ///
     /// # Errors
     /// [`ErrorKind::UnitMismatch`] where quantity and unit are of different dimensions.
     pub fn resolve(&self, quantity: Option<Quantity>, unit: Option<&SpectralUnit>) -> Result<Checked<Measured>, Error> {
-        let location =
-            if self.name.is_empty() { self.location.clone() } else { self.location.clone().of_item(&self.name) };
+        let location = item(self.location.clone(), &self.name);
         let stated = (self.quantity, self.unit.as_ref());
         let Checked { value: scale, findings } =
             Scale::new(stated, (quantity, unit), self.spectrum.values().len(), &location)?;

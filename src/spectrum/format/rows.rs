@@ -59,7 +59,8 @@ impl RowTable {
         let texts: Vec<String> = split(record.text, dialect.separator).map(|f| f.text().into_owned()).collect();
         // The corner may say what the numbers are: `irradiance [W/m2/nm],380,381`.
         let corner = heading.name.map(|cell| header::value(&texts[cell])).unwrap_or_default();
-        let facts = (0..heading.cells).filter(|c| !heading.columns.contains(c) && Some(*c) != heading.name);
+        let facts =
+            (0..heading.cells).filter(|c| heading.columns.binary_search(c).is_err() && Some(*c) != heading.name);
         Ok(Self {
             grid,
             quantity: corner.quantity,
@@ -119,10 +120,9 @@ impl RowTable {
     pub(super) fn facts(&self, record: Record<'_>) -> Vec<(String, String)> {
         let mut facts = Vec::with_capacity(self.facts.len());
         if !self.facts.is_empty() {
-            for (cell, field) in split(record.text, self.dialect.separator).enumerate() {
-                if let Some((_, name)) = self.facts.iter().find(|(c, _)| *c == cell) {
-                    facts.push((name.clone(), field.text().into_owned()));
-                }
+            let fields: Vec<_> = split(record.text, self.dialect.separator).collect();
+            for (cell, name) in &self.facts {
+                facts.extend(fields.get(*cell).map(|field| (name.clone(), field.text().into_owned())));
             }
         }
         facts

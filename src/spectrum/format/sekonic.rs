@@ -47,16 +47,16 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<Spectrum
             let kind = ErrorKind::TooManyColumns { found: split(line, separator).count(), expected: 2 };
             return Err(Error::new(place(line, number, extra.start), kind));
         }
-        let label_place = place(line, number, label.start);
-        let wavelength = instrument::number(wavelength, '.', label_place.clone(), "wavelength")?;
-        let value = instrument::number(value.raw, '.', place(line, number, value.start), "value")?;
+        let start = || place(line, number, label.start);
+        let wavelength = instrument::number(wavelength, '.', "wavelength", start)?;
+        let value = instrument::number(value.raw, '.', "value", || place(line, number, value.start))?;
         // The next block begins anew at the first wavelength of the last one.
         let again = blocks.last().is_none_or(|block| block.values.len() > 1 && block.axis.values[0] == wavelength);
         if again {
             blocks.push(Samples::default());
         }
         if let Some(block) = blocks.last_mut() {
-            block.push(wavelength, value, label_place)?;
+            block.push(wavelength, value, number, start)?;
         }
     }
     // The finest block; of equal ones the first.

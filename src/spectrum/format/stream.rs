@@ -13,7 +13,7 @@ use super::error::{Error, ErrorKind};
 use super::resolve::Scale;
 use super::rows::{Negatives, Row, RowTable};
 use super::text::{self, Utf8Reader};
-use super::{Format, ReadOptions, SpectrumFile, detect, read};
+use super::{Format, ReadOptions, SpectrumFile, detect, item, read};
 use crate::finding::{Checked, Finding, Location};
 
 /// Largest input held whole, bytes of UTF-8.
@@ -222,7 +222,7 @@ impl<R: Read> RowStream<R> {
             }
             let rows: Vec<Result<Row, Error>> = rows.into_iter().filter_map(|(row, _)| row).collect();
             for row in rows.iter().flatten() {
-                self.negatives.add(&row.values, || Location::line(row.line).of_item(&row.name));
+                self.negatives.add(&row.values, || item(Location::line(row.line), &row.name));
             }
             self.rows += rows.len() as u64;
             if !rows.is_empty() {
@@ -233,11 +233,9 @@ impl<R: Read> RowStream<R> {
 
     /// The next lines: number, and the bytes of the buffer from which to which they reach, line feed included.
     fn take_lines(&mut self, most: usize) -> Result<Vec<(u64, usize, usize)>, Error> {
-        self.source.buffer.drain(..self.used);
-        self.used = 0;
         let mut lines = Vec::new();
-        let mut start = 0;
-        let mut scanned = 0;
+        let mut start = self.used;
+        let mut scanned = self.used;
         loop {
             let buffer = &self.source.buffer;
             while lines.len() < most
@@ -248,10 +246,9 @@ impl<R: Read> RowStream<R> {
                 self.line += 1;
                 start = scanned;
             }
-            if lines.len() == most || (!lines.is_empty() && buffer.len() >= BATCH) {
+            if lines.len() == most || (!lines.is_empty() && scanned - self.used >= BATCH) {
                 return Ok(lines);
             }
-            scanned = buffer.len();
             if self.source.ended {
                 if start < buffer.len() {
                     lines.push((self.line, start, buffer.len()));
@@ -261,8 +258,16 @@ impl<R: Read> RowStream<R> {
             }
             if buffer.len() - start > LONGEST_ROW {
                 let kind = ErrorKind::TooLarge { what: "a row", limit: LONGEST_ROW as u64 };
-                return Err(Error::new(Location::line(self.line), kind));
+                return Err(Error::new(Location::at(self.line, 1), kind));
             }
+            // What was handed out makes room; places in the buffer move with the rest.
+            let used = std::mem::take(&mut self.used);
+            self.source.buffer.drain(..used);
+            for (_, from, to) in &mut lines {
+                (*from, *to) = (*from - used, *to - used);
+            }
+            start -= used;
+            scanned = self.source.buffer.len();
             self.source.fill(HEAD)?;
         }
     }

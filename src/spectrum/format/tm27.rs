@@ -17,16 +17,12 @@ pub(super) fn matches(head: &str) -> bool {
     head.trim_start().starts_with('<')
 }
 
-/// Deepest nesting that is handed to the XML parser, which is recursive; a TM-27 file nests four deep.
-const DEEPEST: usize = 64;
-
 pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<SpectrumFile>, Error> {
-    refuse_depth(text)?;
     let document = Document::parse(text).map_err(|error| {
         let at = error.pos();
-        Error::at(at.row.into(), at.col.into(), ErrorKind::Xml { message: error.to_string() })
+        Error::at(at.row.into(), at.col.into(), ErrorKind::Xml { message: without_place(&error.to_string()) })
     })?;
-    let reader = Reader { text, options };
+    let reader = Reader { text, options, line_starts: text.match_indices('\n').map(|(at, _)| at + 1).collect() };
     let root = document.root_element();
     if root.tag_name().name() != "IESTM2714" {
         let found = format!("the element <{}>", root.tag_name().name());
@@ -58,25 +54,9 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<Spectrum
     Ok(Checked { value: SpectrumFile { format: Format::Tm27, entries, metadata: Vec::new() }, findings })
 }
 
-/// Refuses XML nested so deep that a recursive parser might run out of stack. Tags in comments count too: good enough, as
-/// legal files are far from the limit.
-fn refuse_depth(text: &str) -> Result<(), Error> {
-    let mut depth = 0usize;
-    for (at, _) in text.match_indices('<') {
-        match text.as_bytes().get(at + 1) {
-            Some(b'/') => depth = depth.saturating_sub(1),
-            Some(b'?' | b'!') | None => {}
-            Some(_) => {
-                let tag = &text[at..text[at..].find('>').map_or(text.len(), |end| at + end)];
-                depth += usize::from(!tag.ends_with('/'));
-            }
-        }
-        if depth > DEEPEST {
-            let kind = ErrorKind::Xml { message: format!("more than {DEEPEST} elements inside each other") };
-            return Err(Error::new(place(text, 1, at), kind));
-        }
-    }
-    Ok(())
+/// The message of the XML parser without the place at its end, which the error carries already.
+fn without_place(message: &str) -> String {
+    message.rsplit_once(" at ").map_or(message, |(text, _)| text).to_owned()
 }
 
 /// Comparison of local names: files carry the namespace `iestm2714` or none.
@@ -101,6 +81,8 @@ fn content<'a>(node: Node<'a, '_>) -> &'a str {
 struct Reader<'a> {
     text: &'a str,
     options: &'a ReadOptions,
+    /// Where the second line begins, the third, and so on.
+    line_starts: Vec<usize>,
 }
 
 impl Reader<'_> {
@@ -124,7 +106,8 @@ impl Reader<'_> {
             match part.tag_name().name() {
                 "SpectralData" => {
                     let (nm, value) = self.sample(part)?;
-                    samples.push(nm, value, self.place(part))?;
+                    let line = 1 + self.line_starts.partition_point(|start| *start <= part.range().start) as u64;
+                    samples.push(nm, value, line, || self.place(part))?;
                 }
                 "SpectralQuantity" => (quantity, unit) = self.quantity(part, findings),
                 other => metadata.push((other.to_owned(), content(part).to_owned())),
@@ -147,9 +130,9 @@ impl Reader<'_> {
             };
             return Err(Error::new(self.place(node), kind));
         };
-        let at = place(self.text, 1, attribute.range_value().start);
-        let nm = instrument::number(attribute.value().trim(), '.', at, "wavelength")?;
-        let value = instrument::number(content(node), '.', self.content_place(node), "value")?;
+        let start = || place(self.text, 1, attribute.range_value().start);
+        let nm = instrument::number(attribute.value().trim(), '.', "wavelength", start)?;
+        let value = instrument::number(content(node), '.', "value", || self.content_place(node))?;
         Ok((nm, value))
     }
 

@@ -38,14 +38,15 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<Spectrum
             facts.add(label.trim(), value.trim(), &SETTINGS);
             continue;
         };
-        let value_place = place(line, number, line.len() - value.trim_start().len());
+        let start = || place(line, number, 0);
+        let value_start = || place(line, number, line.len() - value.trim_start().len());
         if value.trim().contains('\t') {
-            let found = 1 + line.split('\t').count();
-            return Err(Error::new(value_place, ErrorKind::TooManyColumns { found, expected: 2 }));
+            let found = 1 + value.trim().split('\t').count();
+            return Err(Error::new(value_start(), ErrorKind::TooManyColumns { found, expected: 2 }));
         }
-        let wavelength = instrument::number(wavelength, decimal, place(line, number, 0), "wavelength")?;
-        let value = instrument::number(value.trim(), decimal, value_place, "value")?;
-        samples.push(wavelength, value, place(line, number, 0))?;
+        let wavelength = instrument::number(wavelength, decimal, "wavelength", start)?;
+        let value = instrument::number(value.trim(), decimal, "value", value_start)?;
+        samples.push(wavelength, value, number, start)?;
     }
     if samples.values.is_empty() {
         return Err(Error::whole(ErrorKind::NoSpectrum { expected: "lines such as 380nm, TAB, value" }));

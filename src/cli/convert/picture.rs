@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::Failure;
-use super::convert_args::PlotKind;
+use super::args::PlotKind;
+use crate::cli::Failure;
 use crate::conversion::{Conversion, Settings};
 use crate::plot::conversion::{Drawn, chromaticity_panel, colour_vector_panel, spectrum_panel};
 use crate::plot::{Diagram, Format, Panel, draw as draw_panels};

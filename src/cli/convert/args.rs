@@ -29,22 +29,22 @@ Examples:
   photopic convert *.csv --json > results.json
   photopic convert lamp.csv --plot lamp.svg
   cat lamp.csv | photopic convert - --csv")]
-pub(super) struct ConvertArgs {
+pub(in crate::cli) struct ConvertArgs {
     /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
     /// line:555nm.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<String>,
 
     #[command(flatten)]
-    pub reading: Reading,
+    pub(super) reading: Reading,
     #[command(flatten)]
-    pub integration: Integration,
+    pub(super) integration: Integration,
     #[command(flatten)]
-    pub colour: Colour,
+    pub(super) colour: Colour,
     #[command(flatten)]
-    pub geometry: GeometryArgs,
+    pub(super) geometry: GeometryArgs,
     #[command(flatten)]
-    pub output: Output,
+    pub(super) output: Output,
 }
 
 /// How the input is read.
@@ -140,7 +140,6 @@ pub(super) struct Colour {
 /// Geometry that connects quantities.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Geometry (each option opens relations, none is assumed)")]
-#[expect(clippy::struct_excessive_bools, reason = "independent switches of a command line")]
 pub(super) struct GeometryArgs {
     /// Distance from source to receiver, such as 2m: E = I/r².
     #[arg(long, value_parser = measures::length)]

@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use sha2::{Digest, Sha256};
 
 use crate::constants::SecondRadiation;
-use crate::finding::Finding;
+use crate::finding::{Finding, Location};
 use crate::illuminant::named;
 use crate::report::envelope::Input;
 use crate::spectrum::format::{self, Measured, Opened, ReadOptions, RowStream};
@@ -34,7 +34,7 @@ pub(super) struct Item {
 /// Why an input was not read, ready to print.
 pub(super) struct Refused {
     pub message: String,
-    pub finding: Finding,
+    pub finding: Box<Finding>,
 }
 
 impl Refused {
@@ -42,12 +42,12 @@ impl Refused {
         let located = error.in_file(path);
         let message = located.to_string();
         let finding = Finding::error("S000", message.clone()).at(located.location().clone());
-        Self { message, finding }
+        Self { message, finding: Box::new(finding) }
     }
 
     pub(super) fn plain(path: &str, message: &str) -> Self {
-        let location = crate::finding::Location::default().in_file(path);
-        Self { message: format!("{path}: {message}"), finding: Finding::error("S000", message).at(location) }
+        let finding = Finding::error("S000", message).at(Location::default().in_file(path));
+        Self { message: format!("{path}: {message}"), finding: Box::new(finding) }
     }
 }
 
