@@ -119,9 +119,13 @@ fn integration(
     let error_bound = plan.luminous.photopic_error.bound(spectrum, luminous.photopic / settings.efficacy.k_m);
     if plan.sampling == Sampling::Density {
         if let Some(bound) = error_bound.truncation_relative.filter(|b| *b > 0.0) {
+            let effect = if bound < 1.0 {
+                format!("changes the photopic integral by at most {} %", significant(100.0 * bound, 2))
+            } else {
+                "may exceed what is measured".to_owned()
+            };
             let message = format!(
-                "the spectrum covers {first}–{last} nm; what it may have beyond changes the photopic integral by at most {:.2e} of it, if it is nowhere larger there than its largest sample",
-                bound
+                "the spectrum covers {first}–{last} nm; what it may have beyond {effect}, if it is nowhere larger there than its largest sample"
             );
             findings.push(if bound > NOTABLE {
                 Finding::warning("P002", message)

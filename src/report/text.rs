@@ -222,7 +222,11 @@ fn basis(out: &mut Lines, c: &Conversion, settings: &Settings) {
         "obtained by",
         format!("{rule}, {resampling}, K_m {} lm/W, {}, {observer}", settings.efficacy.k_m, settings.efficiency),
     );
-    let part = |v: Option<f64>| v.map_or("–".into(), |v| format!("{} %", significant(100.0 * v, 2)));
+    let part = |v: Option<f64>| match v {
+        None => "–".to_owned(),
+        Some(v) if v >= 1.0 => "100 % or more".to_owned(),
+        Some(v) => format!("{} %", significant(100.0 * v, 2)),
+    };
     let bound = &i.error_bound;
     out.line(
         "error of the integral",

@@ -4,7 +4,7 @@
 //! - [`quantity`]: what the values are of, and their unit.
 //! - [`resample`](mod@resample): explicit interpolation and extrapolation; nothing else in the crate changes a grid.
 //! - [`integrate`]: the contract under which a spectrum is integrated against a weighting function.
-//! - [`format`]: one file per file format.
+//! - [`format`](mod@format): one file per file format.
 
 use std::sync::Arc;
 
