@@ -1,15 +1,20 @@
 //! Where results go: standard output, or a file written beside its place and moved there when whole.
 
-use std::fs;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::Failure;
 
+/// Bytes gathered before they are written.
+const BUFFER: usize = 1 << 16;
+
 /// The destination of a run's results.
 pub(super) enum Sink {
     /// Standard output.
     Stdout(BufWriter<io::StdoutLock<'static>>),
+    /// A pipe or a device: written to as it is, for it must not be replaced by a file.
+    Device(BufWriter<File>),
     /// A temporary file beside the destination.
     File(BufWriter<tempfile::NamedTempFile>, PathBuf),
 }
@@ -20,20 +25,33 @@ impl Sink {
     /// A destination that is one of the inputs is refused.
     pub(super) fn open(path: Option<&Path>, inputs: &[String]) -> Result<Self, Failure> {
         let Some(path) = path.filter(|p| *p != Path::new("-")) else {
-            return Ok(Self::Stdout(BufWriter::with_capacity(1 << 16, io::stdout().lock())));
+            return Ok(Self::Stdout(BufWriter::with_capacity(BUFFER, io::stdout().lock())));
         };
         refuse_input(path, inputs)?;
-        let file = beside(path)?;
-        Ok(Self::File(BufWriter::with_capacity(1 << 16, file), path.to_owned()))
+        match fs::metadata(path) {
+            Ok(m) if m.is_dir() => Err(Failure::Message(format!("{}: is a folder; expected a file", path.display()))),
+            Ok(m) if !m.is_file() => {
+                let file = OpenOptions::new().write(true).open(path).map_err(|e| cannot(path, &e))?;
+                Ok(Self::Device(BufWriter::with_capacity(BUFFER, file)))
+            }
+            found => {
+                // Through a link, the file behind it is replaced and the link stays.
+                let place =
+                    if found.is_ok() { fs::canonicalize(path).map_err(|e| cannot(path, &e))? } else { path.to_owned() };
+                Ok(Self::File(BufWriter::with_capacity(BUFFER, beside(&place)?), place))
+            }
+        }
     }
 
-    /// Flushes, and moves a file to its place.
-    pub(super) fn finish(self) -> Result<(), Failure> {
+    /// Flushes, and moves a file to its place; with nothing worth keeping an earlier file stays as it was.
+    pub(super) fn finish(self, worth_keeping: bool) -> Result<(), Failure> {
         match self {
             Self::Stdout(mut out) => Ok(out.flush()?),
+            Self::Device(mut out) => Ok(out.flush()?),
+            Self::File(..) if !worth_keeping => Ok(()),
             Self::File(out, path) => {
-                let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-                place(file, &path)
+                let file = out.into_inner().map_err(|e| cannot(&path, e.error()))?;
+                file.persist(&path).map(|_| ()).map_err(|e| cannot(&path, &e.error))
             }
         }
     }
@@ -43,6 +61,7 @@ impl Write for Sink {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         match self {
             Self::Stdout(out) => out.write(buffer),
+            Self::Device(out) => out.write(buffer),
             Self::File(out, _) => out.write(buffer),
         }
     }
@@ -50,6 +69,7 @@ impl Write for Sink {
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Stdout(out) => out.flush(),
+            Self::Device(out) => out.flush(),
             Self::File(out, _) => out.flush(),
         }
     }
@@ -57,10 +77,25 @@ impl Write for Sink {
 
 /// Writes a whole file at once, under the same promises.
 pub(super) fn write_file(path: &Path, bytes: &[u8], inputs: &[String]) -> Result<(), Failure> {
-    refuse_input(path, inputs)?;
-    let mut file = beside(path)?;
-    file.write_all(bytes).map_err(|e| Failure::Message(format!("{}: cannot be written: {e}", path.display())))?;
-    place(file, path)
+    let mut sink = Sink::open(Some(path), inputs)?;
+    sink.write_all(bytes).map_err(|e| cannot(path, &e))?;
+    sink.finish(true)
+}
+
+fn cannot(path: &Path, error: &io::Error) -> Failure {
+    Failure::Message(format!(
+        "{}: cannot be written: {error}; expected a file in a folder that can be written to",
+        path.display()
+    ))
+}
+
+/// Whether two paths name one file, which need not exist yet.
+pub(super) fn same_file(a: &Path, b: &Path) -> bool {
+    let resolve = |p: &Path| {
+        let folder = p.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::canonicalize(p).ok().or_else(|| Some(fs::canonicalize(folder).ok()?.join(p.file_name()?)))
+    };
+    resolve(a).is_some_and(|a| resolve(b) == Some(a))
 }
 
 fn refuse_input(path: &Path, inputs: &[String]) -> Result<(), Failure> {
@@ -80,16 +115,5 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile, Failure> {
     // Temporary files are private by default; a result is as readable as any file the user makes.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder).map_err(|e| {
-        Failure::Message(format!(
-            "{}: cannot be written: {e}; expected a folder that can be written to",
-            path.display()
-        ))
-    })
-}
-
-fn place(file: tempfile::NamedTempFile, path: &Path) -> Result<(), Failure> {
-    file.persist(path)
-        .map(|_| ())
-        .map_err(|e| Failure::Message(format!("{}: cannot be written: {}", path.display(), e.error)))
+    builder.tempfile_in(folder).map_err(|e| cannot(path, &e))
 }

@@ -314,11 +314,10 @@ fn integration(c: &Conversion, settings: &Settings) -> Value {
     let ErrorBound { truncation_relative, step_relative } = i.error_bound;
     let total = truncation_relative.zip(step_relative).map(|(a, b)| a + b);
     let extrapolation = settings.resampling.map_or_else(|| json!("none"), |r| json!(r.extrapolation));
-    json!({
+    let mut out = json!({
         "rule": i.rule.word(),
         "photon_rule": i.photon_rule.word(),
         "range_nm": [i.range_nm.0, i.range_nm.1],
-        "step_nm": i.step_nm,
         "samples": i.samples,
         "resampling": resampling(settings),
         "extrapolation": extrapolation,
@@ -333,7 +332,11 @@ fn integration(c: &Conversion, settings: &Settings) -> Value {
             "truncation_relative": truncation_relative,
             "step_relative": step_relative,
         },
-    })
+    });
+    if let Some(step) = i.step_nm {
+        out["step_nm"] = step.into();
+    }
+    out
 }
 
 /// What the instrument printed beside our own figures: an object for each one that we have, too.

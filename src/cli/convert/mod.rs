@@ -77,14 +77,20 @@ pub(super) fn run(arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
     let table = csv_report::Table::new(settings.groups, settings.mesopic_adaptation.is_some());
     let settings_json = json_report::settings(&settings);
     let job = Job { arguments: &arguments, converter: Converter::new(settings), table, form };
+    if let (Some(results), Some(picture)) = (&arguments.output.output, &arguments.output.plot)
+        && output::same_file(results, picture)
+    {
+        let message = format!("{}: named for the results and for the picture; expected two files", picture.display());
+        return Err(Failure::Message(message));
+    }
     let mut sink = Sink::open(arguments.output.output.as_deref(), &arguments.files)?;
     let mut writer = match form {
-        Form::Json => Writer::Json(Envelope::begin(&mut sink, "convert", &settings_json)?),
+        Form::Json => Writer::json(Envelope::begin(&mut sink, "convert", &settings_json)?),
         Form::Csv => {
             sink.write_all(&csv_row(job.table.header()))?;
-            Writer::Plain(&mut sink, false)
+            Writer::plain(&mut sink)
         }
-        Form::Text => Writer::Plain(&mut sink, false),
+        Form::Text => Writer::plain(&mut sink),
     };
     let mut notes = Notes::new(&arguments.files, talk);
     let mut kept = Vec::new();
@@ -125,8 +131,8 @@ pub(super) fn run(arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
         }
     }
     notes.progress.finish_and_clear();
-    writer.end()?;
-    sink.finish()?;
+    let written = writer.end()?;
+    sink.finish(written > 0)?;
     if let (Some(path), Some(format)) = (&arguments.output.plot, plot) {
         let picture = picture::draw(&kept, job.converter.settings(), arguments.output.plot_kind, format)?;
         output::write_file(path, &picture, &arguments.files)?;

@@ -7,43 +7,58 @@ use crate::finding::Finding;
 use crate::report::envelope::{Envelope, Input};
 
 /// Where rendered results go.
-pub(super) enum Writer<'a> {
-    Json(Envelope<&'a mut Sink>),
-    /// Text or CSV; whether a result was written already.
-    Plain(&'a mut Sink, bool),
+pub(super) struct Writer<'a> {
+    form: Form<'a>,
+    results: usize,
 }
 
-impl Writer<'_> {
+enum Form<'a> {
+    Json(Envelope<&'a mut Sink>),
+    /// Text or CSV.
+    Plain(&'a mut Sink),
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn json(envelope: Envelope<&'a mut Sink>) -> Self {
+        Self { form: Form::Json(envelope), results: 0 }
+    }
+
+    pub(super) fn plain(sink: &'a mut Sink) -> Self {
+        Self { form: Form::Plain(sink), results: 0 }
+    }
+
     pub(super) fn result(&mut self, bytes: &[u8]) -> io::Result<()> {
-        match self {
-            Self::Json(envelope) => envelope.result_bytes(bytes),
-            Self::Plain(out, began) => {
-                // A blank line between reports; CSV rows end in theirs and begin with no heading.
-                if *began && bytes.ends_with(b"\n") && bytes.iter().filter(|b| **b == b'\n').count() > 1 {
+        self.results += 1;
+        match &mut self.form {
+            Form::Json(envelope) => envelope.result_bytes(bytes),
+            Form::Plain(out) => {
+                // A blank line between reports; a CSV row is one line.
+                if self.results > 1 && bytes.iter().filter(|b| **b == b'\n').count() > 1 {
                     out.write_all(b"\n")?;
                 }
-                *began = true;
                 out.write_all(bytes)
             }
         }
     }
 
     pub(super) fn finding(&mut self, finding: Finding) {
-        if let Self::Json(envelope) = self {
+        if let Form::Json(envelope) = &mut self.form {
             envelope.finding(finding);
         }
     }
 
     pub(super) fn input(&mut self, input: Input) {
-        if let Self::Json(envelope) = self {
+        if let Form::Json(envelope) = &mut self.form {
             envelope.input(input);
         }
     }
 
-    pub(super) fn end(self) -> io::Result<()> {
-        match self {
-            Self::Json(envelope) => envelope.end().map(|_| ()),
-            Self::Plain(out, _) => out.flush(),
+    /// Ends the output and tells how many results it has.
+    pub(super) fn end(self) -> io::Result<usize> {
+        match self.form {
+            Form::Json(envelope) => envelope.end().map(|_| ())?,
+            Form::Plain(out) => out.flush()?,
         }
+        Ok(self.results)
     }
 }
