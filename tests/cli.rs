@@ -656,6 +656,21 @@ fn rules_and_ranges_are_those_asked_for() {
 }
 
 #[test]
+fn a_range_without_samples_is_not_told_as_one_that_runs_backwards() {
+    for range in ["100-200", "900-1000"] {
+        let d = json(photopic().args(["convert", "A", "--range", range, "-q"]));
+        let told = &d["results"][0]["integration"]["range_nm"];
+        let ascending = told[0].as_f64().zip(told[1].as_f64()).is_none_or(|(low, high)| low <= high);
+        assert!(ascending, "{range}: {told}");
+    }
+}
+
+#[test]
+fn a_line_spectrum_is_not_resampled_because_it_is_one() {
+    photopic().args(["convert", "line:500nm", "--resample", "1"]).assert().code(2).stderr(contains("line spectrum"));
+}
+
+#[test]
 fn the_constants_are_those_asked_for_and_printed() {
     let run =
         |arguments: &[&str]| json(photopic().args(["convert", "line:555nm", "--scale-to", "1 W"]).args(arguments));
@@ -858,6 +873,19 @@ fn several_columns_are_several_results_and_select_takes_some() {
     assert_eq!(names(&["--select", "Lamp C", "--select", "Lamp A"]), ["Lamp A", "Lamp C"]);
     let refused = folder.run().args(["convert", "lamps.csv", "--select", "Lamp D"]).assert().code(2);
     refused.stderr(contains("Lamp D").and(contains("Lamp A")));
+}
+
+#[test]
+fn a_name_that_select_does_not_find_is_told_even_beside_one_that_it_finds() {
+    let columns = "wavelength,Lamp A,Lamp B\n400,1,0\n500,0,1\n600,0,0\n";
+    let rows = "name,400 nm,500 nm,600 nm\nLamp A,1,0,0\nLamp B,0,1,0\n";
+    let folder = Folder::new().with("columns.csv", columns).with("rows.csv", rows);
+    for name in ["columns.csv", "rows.csv"] {
+        let arguments =
+            ["convert", name, "-q", "--csv", "--figures", "luminous", "--select", "Lamp A", "--select", "Lamp Z"];
+        let run = folder.run().args(arguments).assert().code(2);
+        run.stderr(contains("Lamp Z")).stdout(contains("Lamp A").and(contains("Lamp B").not()));
+    }
 }
 
 #[test]

@@ -19,9 +19,11 @@ const INDUCTION: f64 = 1.0;
 pub struct Cam02 {
     to_cones: DMat3,
     luminance_factor: f64,
-    n: f64,
     n_bb: f64,
-    z: f64,
+    /// c·z, the exponent of lightness.
+    lightness_exponent: f64,
+    /// (1.64 − 0.29ⁿ)^0.73 · F_L^¼, from t^0.9·√(J/100) to colourfulness.
+    colourfulness_factor: f64,
     achromatic_white: f64,
 }
 
@@ -51,9 +53,9 @@ impl Cam02 {
         let mut model = Self {
             to_cones,
             luminance_factor,
-            n,
             n_bb: 0.725 * n.powf(-0.2),
-            z: 1.48 + n.sqrt(),
+            lightness_exponent: SURROUND * (1.48 + n.sqrt()),
+            colourfulness_factor: (1.64 - 0.29_f64.powf(n)).powf(0.73) * luminance_factor.powf(0.25),
             achromatic_white: 1.0,
         };
         model.achromatic_white = model.achromatic(model.compress(white));
@@ -80,15 +82,17 @@ impl Cam02 {
         let c = self.compress(DVec3::from(xyz));
         let a = c.x - 12.0 * c.y / 11.0 + c.z / 11.0;
         let b = (c.x + c.y - 2.0 * c.z) / 9.0;
-        let hue = b.atan2(a);
-        let eccentricity = 0.25 * ((hue + 2.0).cos() + 3.8);
+        // cos h and sin h without the angle; without chroma the hue does not matter.
+        let length = (a * a + b * b).sqrt();
+        let (cos, sin) = if length > 0.0 { (a / length, b / length) } else { (1.0, 0.0) };
+        let (sin_2, cos_2) = 2.0_f64.sin_cos();
+        let eccentricity = 0.25 * (cos * cos_2 - sin * sin_2 + 3.8);
         let ratio = (self.achromatic(c) / self.achromatic_white).max(0.0);
-        let lightness = 100.0 * ratio.powf(SURROUND * self.z);
-        let t = 50_000.0 / 13.0 * INDUCTION * self.n_bb * eccentricity * a.hypot(b) / (c.x + c.y + 1.05 * c.z);
-        let chroma = t.max(0.0).powf(0.9) * (lightness / 100.0).sqrt() * (1.64 - 0.29_f64.powf(self.n)).powf(0.73);
-        let colourfulness = chroma * self.luminance_factor.powf(0.25);
+        let j = ratio.powf(self.lightness_exponent);
+        let t = 50_000.0 / 13.0 * INDUCTION * self.n_bb * eccentricity * length / (c.x + c.y + 1.05 * c.z);
+        let colourfulness = t.max(0.0).powf(0.9) * j.sqrt() * self.colourfulness_factor;
         let m = (0.0228 * colourfulness).ln_1p() / 0.0228;
-        [1.7 * lightness / (1.0 + 0.007 * lightness), m * hue.cos(), m * hue.sin()]
+        [170.0 * j / (1.0 + 0.7 * j), m * cos, m * sin]
     }
 }
 

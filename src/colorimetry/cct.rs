@@ -22,6 +22,9 @@ pub const LOWEST_K: f64 = 500.0;
 /// Highest temperature reported, K: beyond, 1e-7 in u is more than the rest of the locus.
 pub const HIGHEST_K: f64 = 1e6;
 
+/// Both ends belong to the range, up to what rounding of (u, v) makes of them.
+const END_TOLERANCE: f64 = 1e-6;
+
 /// Spacing of the locus's knots, in mired on the ITS-90 scale.
 const STEP_MIRED: f64 = 5.0;
 /// Number of knots: 0 to 2500 mired (infinite temperature to 400 K, beyond the lowest reported on any scale).
@@ -232,9 +235,9 @@ fn finish(mired: f64, off: [f64; 2], tangent: [f64; 2], c2: SecondRadiation) -> 
     let kelvin = 1e6 / mired * (c2.metre_kelvin() / SECOND_RADIATION_ITS90);
     if duv.abs() > LARGEST_DUV {
         Err(Undefined::TooFar { duv })
-    } else if kelvin > HIGHEST_K {
+    } else if kelvin > HIGHEST_K * (1.0 + END_TOLERANCE) {
         Err(Undefined::TooBlue)
-    } else if kelvin < LOWEST_K {
+    } else if kelvin < LOWEST_K * (1.0 - END_TOLERANCE) {
         Err(Undefined::TooRed)
     } else {
         Ok(Cct { kelvin, duv })

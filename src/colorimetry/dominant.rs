@@ -5,9 +5,6 @@ use super::observer::Observer;
 
 /// Below this distance from the white point in (x, y) there is no hue: the print of CIE chromaticities to four digits.
 const ACHROMATIC: f64 = 1e-5;
-/// The spectral locus is used between these wavelengths, nm: beyond, the table's few digits make it wander.
-const LOCUS_RANGE_NM: (f64, f64) = (380.0, 700.0);
-
 /// The hue and strength of a chromaticity, against a white point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dominant {
@@ -22,17 +19,15 @@ pub struct Dominant {
 #[must_use]
 pub fn spectral_locus(observer: Observer) -> Vec<[f64; 3]> {
     let [x, y, z] = observer.colour_matching_functions();
-    let (low, high) = LOCUS_RANGE_NM;
     (x.wavelengths_nm().iter())
-        .filter(|w| (low..=high).contains(*w))
         .filter_map(|&w| chromaticity::xy([x.at(w), y.at(w), z.at(w)]).map(|[cx, cy]| [w, cx, cy]))
         .collect()
 }
 
 /// Dominant wavelength and purity of `xy` against the white point `white_xy`; `None` where the two coincide.
 ///
-/// The ray from white through the colour is cut with the straight pieces between the 1 nm points of the spectral locus,
-/// 380–700 nm; where it meets the purple line, the wavelength is that of the opposite ray, negative.
+/// The ray from white through the colour is cut with the straight pieces between the 1 nm points of the spectral locus. Its
+/// violet end turns back on itself within 1e-3: of several cuts the one nearest to the colour counts. Where the ray meets the purple line, the wavelength is that of the opposite ray, negative.
 #[must_use]
 pub fn dominant(xy: [f64; 2], white_xy: [f64; 2], observer: Observer) -> Option<Dominant> {
     let locus = spectral_locus(observer);
@@ -51,10 +46,11 @@ pub fn dominant(xy: [f64; 2], white_xy: [f64; 2], observer: Observer) -> Option<
 }
 
 fn cut_locus(white: [f64; 2], direction: [f64; 2], locus: &[[f64; 3]]) -> Option<(f64, f64)> {
-    locus.windows(2).find_map(|w| {
+    let cuts = locus.windows(2).filter_map(|w| {
         let (t, s) = cut(white, direction, [w[0][1], w[0][2]], [w[1][1], w[1][2]])?;
         Some((t, w[0][0] + s * (w[1][0] - w[0][0])))
-    })
+    });
+    cuts.min_by(|a, b| (a.0 - 1.0).abs().total_cmp(&(b.0 - 1.0).abs()))
 }
 
 /// Where the ray `origin + t·direction`, t > 0, meets the segment a–b: (t, place on the segment from 0 to 1).
@@ -64,7 +60,9 @@ fn cut(origin: [f64; 2], direction: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Optio
     let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
     let denominator = cross(direction, edge);
     let (t, s) = (cross(to_a, edge) / denominator, cross(to_a, direction) / denominator);
-    (t > 0.0 && (0.0..=1.0).contains(&s) && t.is_finite()).then_some((t, s))
+    // A colour that is a point of the locus may fall between its two pieces by rounding.
+    let tolerance = 1e-9;
+    (t > 0.0 && t.is_finite() && (-tolerance..=1.0 + tolerance).contains(&s)).then_some((t, s.clamp(0.0, 1.0)))
 }
 
 #[cfg(test)]
@@ -75,7 +73,7 @@ mod tests {
 
     #[test]
     fn spectral_colours_are_their_own_dominant_wavelength() {
-        for [w, x, y] in spectral_locus(Observer::Cie1931).into_iter().skip(20) {
+        for [w, x, y] in spectral_locus(Observer::Cie1931) {
             let got = dominant([x, y], EQUAL_ENERGY, Observer::Cie1931).expect("coloured");
             assert!((got.excitation_purity - 1.0).abs() < 1e-9, "{w}: {got:?}");
             // Beyond 690 nm the tabulated locus stands still.
@@ -87,7 +85,8 @@ mod tests {
 
     #[test]
     fn halfway_to_white_has_half_the_purity() {
-        let [_, x, y] = spectral_locus(Observer::Cie1931)[200];
+        let locus = spectral_locus(Observer::Cie1931);
+        let [_, x, y] = *locus.iter().find(|p| p[0] == 580.0).expect("a wavelength of the table");
         let half = [0.5 * (x + EQUAL_ENERGY[0]), 0.5 * (y + EQUAL_ENERGY[1])];
         let got = dominant(half, EQUAL_ENERGY, Observer::Cie1931).expect("coloured");
         assert!((got.wavelength_nm - 580.0).abs() < 1e-6 && (got.excitation_purity - 0.5).abs() < 1e-9, "{got:?}");

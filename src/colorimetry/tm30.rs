@@ -1,10 +1,8 @@
 //! Colour fidelity and gamut of ANSI/IES TM-30-20 (fidelity as in CIE 224:2017): Rf, Rg and sixteen hue bins.
 
 use super::cam02::Cam02;
-use super::cct::{self, Method};
-use super::chromaticity::uv_1960;
 use super::cri::{Error, reflectances};
-use super::observer::{self, Observer};
+use super::observer::Observer;
 use super::reference::ReferencePlan;
 use super::samples::SamplePlan;
 use crate::constants::SecondRadiation;
@@ -44,7 +42,7 @@ pub struct Bin {
 /// The indices of one source. Not rounded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tm30 {
-    /// Fidelity index Rf, 0 to 100.
+    /// Fidelity index Rf, from 0 to 100 (the formula's own maximum is 100.0005).
     pub rf: f64,
     /// Gamut index Rg, 100 for the reference; `None` where a bin is empty.
     pub rg: Option<f64>,
@@ -59,20 +57,18 @@ pub struct Tm30 {
 /// Samples and references compiled for one grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    colour: observer::Plan,
     test: SamplePlan,
     own: Option<SamplePlan>,
     reference: ReferencePlan,
-    c2: SecondRadiation,
 }
 
 /// Why a plan gave no indices.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Undefined {
-    /// No colour temperature to build a reference on.
-    #[error("no reference illuminant: {0}")]
-    Cct(#[from] cct::Undefined),
+    /// CIECAM02 has no white so saturated.
+    #[error("the light is too saturated for CIECAM02: a sharpened cone signal of its white is not positive")]
+    Saturated,
     /// Any other reason.
     #[error(transparent)]
     Other(#[from] Error),
@@ -96,13 +92,12 @@ impl Plan {
             SamplePlan::new(Observer::Cie1964, &samples, grid, sampling, contract)
         };
         let test = plan(grid, sampling, &contract)?;
-        let colour = observer::Plan::new(Observer::Cie1931, grid, sampling, &contract)?;
         if sampling == Sampling::Density {
-            return Ok(Self { colour, test, own: None, reference: ReferencePlan::new(grid, c2)?, c2 });
+            return Ok(Self { test, own: None, reference: ReferencePlan::new(grid, c2)? });
         }
         let fine = Grid::uniform(380.0, 1.0, 401).map_err(illuminant::Error::from)?;
         let own = Some(plan(&fine, Sampling::Density, &Contract { rule: None, range_nm: contract.range_nm })?);
-        Ok(Self { colour, test, own, reference: ReferencePlan::new(&fine, c2)?, c2 })
+        Ok(Self { test, own, reference: ReferencePlan::new(&fine, c2)? })
     }
 
     /// The reference spectrum for a colour temperature: blackbody to 4000 K, daylight from 5000 K, and between them the two
@@ -122,18 +117,20 @@ impl Plan {
         Ok(planck.iter().zip(&daylight).map(|(a, b)| p * a + d * b).collect())
     }
 
-    /// The indices of a spectrum (values on the plan's grid, any scale).
+    /// The indices of a spectrum (values on the plan's grid, any scale) of correlated colour temperature `cct_k`.
     ///
     /// # Errors
-    /// [`Undefined::Cct`] where the source has no colour temperature, [`Error::Dark`] without luminous content.
-    pub fn evaluate(&self, values: &[f64]) -> Result<Tm30, Undefined> {
-        let uv = uv_1960(self.colour.xyz(values)).ok_or(cct::Undefined::Black)?;
-        let cct_k = cct::correlated(uv, Method::Exact, self.c2)?.kelvin;
+    /// [`Error::Dark`] without luminous content, [`Error::Illuminant`] above 25 000 K, where daylight is not defined,
+    /// [`Undefined::Saturated`].
+    pub fn evaluate(&self, values: &[f64], cct_k: f64) -> Result<Tm30, Undefined> {
         let reference_plan = self.own.as_ref().unwrap_or(&self.test);
         let reference = self.reference(cct_k, reference_plan)?;
         let (white_t, white_r) = (self.test.white(values), reference_plan.white(&reference));
-        let dark = || Undefined::from(Error::Dark);
-        let (cam_t, cam_r) = (Cam02::new(white_t).ok_or_else(dark)?, Cam02::new(white_r).ok_or_else(dark)?);
+        if !(white_t[1] > 0.0 && white_r[1] > 0.0) {
+            return Err(Error::Dark.into());
+        }
+        let model = |white| Cam02::new(white).ok_or(Undefined::Saturated);
+        let (cam_t, cam_r) = (model(white_t)?, model(white_r)?);
         let mut sums = [[0.0_f64; 5]; BINS];
         let mut counts = [0_usize; BINS];
         let mut sample_fidelity = Vec::with_capacity(SAMPLES);
@@ -160,21 +157,23 @@ impl Plan {
             })
         };
         let rg = area(2).zip(area(0)).map(|(t, r)| 100.0 * t / r);
-        let bins = std::array::from_fn(|j| means[j].map(|m| bin(m, counts[j])));
+        let bins = std::array::from_fn(|j| means[j].map(|m| bin(j, m, counts[j])));
         Ok(Tm30 { rf: fidelity(total / sample_fidelity.len() as f64), rg, bins, sample_fidelity, cct_k })
     }
 }
 
 /// A bin of its means [a′ᵣ, b′ᵣ, a′ₜ, b′ₜ, ΔE′] (TM-30-20, 4.5–4.8).
-fn bin([ar, br, at, bt, difference]: [f64; 5], samples: usize) -> Bin {
+fn bin(index: usize, [ar, br, at, bt, difference]: [f64; 5], samples: usize) -> Bin {
     let length = ar.hypot(br);
+    // Shifts are referred to the centre of the bin, not to its mean colour.
+    let (sin, cos) = ((index as f64 + 0.5) * std::f64::consts::TAU / BINS as f64).sin_cos();
     let reference = [ar / length, br / length];
     let shift = [(at - ar) / length, (bt - br) / length];
     Bin {
         reference,
         test: [reference[0] + shift[0], reference[1] + shift[1]],
-        chroma_shift: shift[0] * reference[0] + shift[1] * reference[1],
-        hue_shift: shift[1] * reference[0] - shift[0] * reference[1],
+        chroma_shift: shift[0] * cos + shift[1] * sin,
+        hue_shift: shift[1] * cos - shift[0] * sin,
         fidelity: fidelity(difference),
         samples,
     }

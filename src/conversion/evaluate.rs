@@ -2,7 +2,7 @@
 
 use super::figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
 use super::{Error, Plan, Settings};
-use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb, tm30};
+use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb};
 use crate::finding::{Checked, Finding};
 use crate::photometry::luminous::Luminous;
 use crate::photometry::{alpha_opic, hazard, mesopic, photon, transfer};
@@ -12,6 +12,8 @@ use crate::units::significant;
 
 /// A relative error bound from which a finding becomes a warning.
 const NOTABLE: f64 = 1e-3;
+/// Nearer than this to the switch of references, K, the choice between them hangs on the last digits of a measurement.
+const REFERENCE_SWITCH_K: f64 = 1.0;
 
 pub(super) fn evaluate(
     settings: &Settings,
@@ -24,7 +26,10 @@ pub(super) fn evaluate(
     let values = spectrum.values();
     let groups = settings.groups;
     let luminous = plan.luminous.evaluate(values);
-    let integrals = [luminous.radiometric, luminous.photopic, luminous.scotopic];
+    let photons = plan.photon.as_ref().map(|p| p.evaluate(values));
+    // Of a relative spectrum no photon numbers are reported.
+    let count = photons.filter(|_| quantity != Quantity::Relative).map_or(0.0, |p| p.total_count);
+    let integrals = [luminous.radiometric, luminous.photopic, luminous.scotopic, count];
     if !integrals.iter().all(|v| v.is_finite()) {
         findings.push(
             Finding::error("P011", "the integrals exceed the largest double (1.8e308)")
@@ -50,6 +55,10 @@ pub(super) fn evaluate(
     }
     let mesopic = mesopic_state(settings, &luminous, lit, &mut findings)?;
     let absolute = absolute(settings, quantity, &luminous, mesopic.as_ref())?;
+    for figures in absolute.iter().skip(1).filter(|f| !(f.photopic.is_finite() && f.radiometric.is_finite())) {
+        let message = format!("the {} that the geometry gives exceeds the largest double (1.8e308)", figures.quantity);
+        findings.push(Finding::error("P011", message));
+    }
     let xyz_scale = if quantity == Quantity::Relative { XyzScale::Hundred } else { XyzScale::Absolute };
     let factor = match xyz_scale {
         XyzScale::Absolute => settings.efficacy.k_m,
@@ -81,7 +90,7 @@ pub(super) fn evaluate(
         tm30: None,
         alpha_opic: Vec::new(),
         hazard: Vec::new(),
-        photons: plan.photon.as_ref().map(|p| p.evaluate(values)),
+        photons,
         rgb: Vec::new(),
         integration,
     };
@@ -101,10 +110,36 @@ pub(super) fn evaluate(
     if let Some(plan) = &plan.hazard {
         out.hazard = hazards(plan, values, &mut findings);
     }
+    undefined_ratios(&out, lit, &luminous, &mut findings);
     if groups.shape {
         shape(plan, spectrum, luminous.radiometric, &mut out, &mut findings);
     }
     Ok(Checked { value: out, findings })
+}
+
+/// Says why a ratio is null where the spectrum as a whole has light.
+fn undefined_ratios(c: &Conversion, lit: bool, luminous: &Luminous, findings: &mut Vec<Finding>) {
+    if !lit {
+        return;
+    }
+    let mut say = |what: &str, why: &str| {
+        findings.push(Finding::warning("P012", format!("no {what}: {why}")));
+    };
+    if c.efficacy_lm_per_w.is_none() {
+        let total = significant(luminous.radiometric, 3);
+        say("luminous efficacy", &format!("the radiant total is {total}, and a ratio to it means nothing"));
+    }
+    if c.alpha_opic.iter().any(|a| a.der.is_none()) {
+        say("α-opic ratios", "there is no luminous content between 380 nm and 780 nm");
+    }
+    if let Some(p) = &c.photons {
+        if p.umol_per_j.is_none() {
+            say("photons per joule", "there is no radiant total to divide by");
+        }
+        if p.par_umol_per_par_j.is_none() {
+            say("photons per joule of PAR", "there is no radiation between 400 nm and 700 nm");
+        }
+    }
 }
 
 fn integration(
@@ -151,9 +186,10 @@ fn integration(
     Integration {
         rule: plan.rule,
         photon_rule: if plan.rule == Rule::Summation { Rule::Trapezoid } else { plan.rule },
-        range_nm: (first.max(low), last.min(high)),
+        // A range that misses the samples is told as it was asked for.
+        range_nm: if first.max(low) <= last.min(high) { (first.max(low), last.min(high)) } else { (low, high) },
         step_nm: spectrum.grid().step_nm(),
-        samples: spectrum.grid().len(),
+        samples: spectrum.wavelengths_nm().iter().filter(|w| (low..=high).contains(*w)).count(),
         error_bound,
     }
 }
@@ -241,11 +277,11 @@ fn colour(
             findings.push(Finding::info("C005", "no dominant wavelength: the chromaticity is that of the white point"));
         }
     }
+    // Rendition needs the temperature itself, whatever method the user wants to see printed.
+    let exact = uv.ok_or(cct::Undefined::Black).and_then(|uv| cct::nearest(uv, settings.c2)).map(|cct| cct.kelvin);
     if let Some(cri_plan) = &plan.cri {
-        // Rᵢ needs the temperature itself, whatever method the user wants to see printed.
-        let exact = uv.ok_or(cct::Undefined::Black).and_then(|uv| cct::nearest(uv, settings.c2));
-        match exact.map(|cct| cri_plan.evaluate(values, cct.kelvin)) {
-            Ok(Ok(cri)) => {
+        match exact.map_err(|e| e.to_string()).and_then(|k| cri_plan.evaluate(values, k).map_err(|e| e.to_string())) {
+            Ok(cri) => {
                 if cri.distance_uv > cri::CHROMATICITY_TOLERANCE {
                     findings.push(Finding::warning(
                         "C003",
@@ -256,23 +292,26 @@ fn colour(
                         ),
                     ));
                 }
+                if exact.is_ok_and(|k| (k - cri::DAYLIGHT_FROM_K).abs() < REFERENCE_SWITCH_K) {
+                    findings.push(Finding::info(
+                        "C007",
+                        "within 1 K of 5000 K, where CIE 13.3 changes from a blackbody to daylight as reference: the indices jump there by up to 1.5",
+                    ));
+                }
                 out.cri = Some(cri);
             }
-            Ok(Err(why)) => findings.push(Finding::warning("C002", format!("no colour rendering index: {why}"))),
             Err(why) => findings.push(Finding::warning("C002", format!("no colour rendering index: {why}"))),
         }
     }
     if let Some(tm30_plan) = &plan.tm30 {
-        match tm30_plan.evaluate(values) {
+        match exact.map_err(|e| e.to_string()).and_then(|k| tm30_plan.evaluate(values, k).map_err(|e| e.to_string())) {
             Ok(tm30) => {
                 if tm30.rg.is_none() {
                     findings.push(Finding::warning("C004", "no gamut index Rg: a hue bin has no sample"));
                 }
                 out.tm30 = Some(tm30);
             }
-            Err(why @ (tm30::Undefined::Cct(_) | tm30::Undefined::Other(_))) => {
-                findings.push(Finding::warning("C004", format!("no TM-30 figures: {why}")));
-            }
+            Err(why) => findings.push(Finding::warning("C004", format!("no TM-30 figures: {why}"))),
         }
     }
 }

@@ -302,6 +302,9 @@ impl Resampling {
     const MOST_SAMPLES: f64 = 1e7;
 
     fn apply(&self, spectrum: &Spectrum) -> Result<Spectrum, Error> {
+        if spectrum.sampling() == Sampling::Lines {
+            return Err(ResampleError::Lines.into());
+        }
         let step_nm = self.step_nm;
         let own = spectrum.grid().range_nm();
         let (low_nm, high_nm) = self.range_nm.unwrap_or_else(|| {
@@ -310,6 +313,7 @@ impl Resampling {
         });
         let count = ((high_nm - low_nm) / step_nm + 1e-9).floor() + 1.0;
         if !(step_nm > 0.0 && (2.0..=Self::MOST_SAMPLES).contains(&count)) {
+            let (low_nm, high_nm) = self.range_nm.unwrap_or(own);
             return Err(Error::ResampleGrid { step_nm, low_nm, high_nm });
         }
         let grid = Arc::new(Grid::uniform(low_nm, step_nm, count as usize)?);

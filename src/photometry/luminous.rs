@@ -197,6 +197,12 @@ impl Plan {
         }
     }
 
+    /// The weights of the photopic integral, without K_m.
+    #[must_use]
+    pub fn photopic_weights(&self) -> &[f64] {
+        &self.photopic
+    }
+
     /// K_m and K′_m used.
     #[must_use]
     pub fn efficacy(&self) -> Efficacy {

@@ -105,6 +105,20 @@ impl Shape {
         }
     }
 
+    /// Largest angle between the axis and any point of the source, seen from a receiver `distance_m` away, rad.
+    #[must_use]
+    pub fn half_extent_rad(self, distance_m: f64) -> f64 {
+        match self {
+            Self::Sphere { radius_m } => (radius_m / distance_m).asin(),
+            Self::Disk { radius_m } => radius_m.atan2(distance_m),
+            Self::Rectangle { width_m, height_m } => (0.5 * width_m.hypot(height_m)).atan2(distance_m),
+            // Two thirds of the height above the centroid, or a corner of the base.
+            Self::Triangle { base_m, height_m } => {
+                (2.0 * height_m / 3.0).max((0.5 * base_m).hypot(height_m / 3.0)).atan2(distance_m)
+            }
+        }
+    }
+
     /// Solid angle at a receiver `distance_m` away, sr.
     #[must_use]
     pub fn solid_angle_sr(self, distance_m: f64) -> f64 {
@@ -195,6 +209,16 @@ pub enum Error {
     /// A shape without a distance.
     #[error("an extended source without a distance; expected --distance beside --source")]
     ShapeWithoutDistance,
+    /// Part of the source is behind the receiver's plane.
+    #[error(
+        "a source that reaches {source_deg:.1}° from its axis, at an incidence of {incidence_deg:.1}°, dips below the receiver's horizon; expected the two to add up to at most 90°"
+    )]
+    Horizon {
+        /// Angular extent of the source from its axis.
+        source_deg: f64,
+        /// Angle of incidence.
+        incidence_deg: f64,
+    },
     /// Inside the sphere.
     #[error("a distance of {distance_m} m to a sphere of radius {radius_m} m; expected a distance beyond its surface")]
     Inside {
@@ -265,12 +289,44 @@ impl Geometry {
             return contradiction("--lambertian", "a --cone beyond 90°");
         }
         match (self.shape, self.distance_m) {
-            (Some(_), None) => Err(Error::ShapeWithoutDistance),
+            (Some(_), None) => return Err(Error::ShapeWithoutDistance),
             (Some(Shape::Sphere { radius_m }), Some(distance_m)) if distance_m <= radius_m => {
-                Err(Error::Inside { distance_m, radius_m })
+                return Err(Error::Inside { distance_m, radius_m });
             }
-            _ => Ok(()),
+            _ => {}
         }
+        match (self.shape, self.incidence_rad) {
+            (Some(_), _) if self.area_m2.is_some() => {
+                return contradiction("--source", "--area (the source has its own)");
+            }
+            (Some(Shape::Sphere { .. }), _) if self.lambertian && self.cone_half_angle_rad.is_some() => {
+                return contradiction("--cone", "a Lambertian sphere, which shines in all directions");
+            }
+            (Some(Shape::Triangle { .. }), Some(angle)) if angle > 0.0 => {
+                return contradiction("--incidence", "--source triangle, which does not look alike from all sides");
+            }
+            _ => {}
+        }
+        self.check_horizon()
+    }
+
+    /// The cosine of the angle of incidence stands for the whole source only while all of it is before the receiver's plane.
+    fn check_horizon(&self) -> Result<(), Error> {
+        let Some(incidence) = self.incidence_rad.filter(|a| *a > 0.0) else { return Ok(()) };
+        let extent = match (self.shape, self.distance_m) {
+            (Some(shape), Some(distance)) => shape.half_extent_rad(distance),
+            (None, None) => self.seen_half_angle_rad().unwrap_or(0.0),
+            _ => 0.0,
+        };
+        if extent + incidence > 0.5 * PI * (1.0 + 1e-12) {
+            return Err(Error::Horizon { source_deg: extent.to_degrees(), incidence_deg: incidence.to_degrees() });
+        }
+        Ok(())
+    }
+
+    /// Half-angle of the cone that --cone or --solid-angle describe.
+    fn seen_half_angle_rad(&self) -> Option<f64> {
+        self.cone_half_angle_rad.or(self.solid_angle_sr.map(solid_angle::cone_half_angle))
     }
 
     /// The relations that this geometry opens for a measurement of `start`.
@@ -308,20 +364,25 @@ impl Geometry {
                 "M = π sin²τ L (Lambert; τ = 90° without --cone)",
                 "L = M/(π sin²τ) (Lambert; τ = 90° without --cone)",
             );
-            edge(
-                Intensity,
-                Flux,
-                lambert,
-                "Φ = π sin²τ I₀ (cosine law; τ = 90° without --cone)",
-                "I₀ = Φ/(π sin²τ) (cosine law; τ = 90° without --cone)",
-            );
-        } else if let Some(omega) = omega {
-            if received {
-                let projected = self.cone_half_angle_rad.map_or(omega, solid_angle::cone_projected) * incidence;
-                edge(Radiance, Irradiance, projected, "E = L Ω⊥", "L = E/Ω⊥");
+            if matches!(self.shape, Some(Shape::Sphere { .. })) {
+                edge(Intensity, Flux, 4.0 * PI, "Φ = 4π I (Lambertian sphere)", "I = Φ/4π (Lambertian sphere)");
             } else {
-                edge(Intensity, Flux, omega, "Φ = I Ω", "I = Φ/Ω");
+                edge(
+                    Intensity,
+                    Flux,
+                    lambert,
+                    "Φ = π sin²τ I₀ (cosine law; τ = 90° without --cone)",
+                    "I₀ = Φ/(π sin²τ) (cosine law; τ = 90° without --cone)",
+                );
             }
+        } else if received {
+            // Of a source, nobody sees more than the hemisphere before the receiver.
+            if let Some(half_angle) = self.seen_half_angle_rad().filter(|a| *a <= 0.5 * PI * (1.0 + 1e-12)) {
+                let projected = solid_angle::cone_projected(half_angle) * incidence;
+                edge(Radiance, Irradiance, projected, "E = π sin²τ cosθ L", "L = E/(π sin²τ cosθ)");
+            }
+        } else if let Some(omega) = omega {
+            edge(Intensity, Flux, omega, "Φ = I Ω", "I = Φ/Ω");
         }
         let area = self.area_m2.or(self.shape.map(Shape::area_m2));
         if let Some(area) = area {
@@ -386,7 +447,8 @@ pub fn what_connects(from: Quantity, to: Quantity) -> &'static str {
         (Relative, _) | (_, Relative) => "an absolute quantity and unit (--quantity, --unit) or --scale-to",
         (Irradiance, Intensity) | (Intensity, Irradiance) => "--distance",
         (Flux, Intensity) | (Intensity, Flux) => "--cone, --solid-angle, --isotropic or --lambertian",
-        (Flux, Irradiance) | (Irradiance, Flux) => {
+        (Flux, Irradiance) => "--distance with --cone, --solid-angle, --isotropic or --lambertian",
+        (Irradiance, Flux) => {
             "--area (of the receiver), or --distance with --cone, --solid-angle, --isotropic or --lambertian"
         }
         (Radiance, Irradiance) | (Irradiance, Radiance) => {

@@ -229,7 +229,7 @@ fn basis(out: &mut Lines, c: &Conversion, settings: &Settings) {
     };
     let bound = &i.error_bound;
     out.line(
-        "error of the integral",
+        "photopic integral off by",
         format!(
             "at most {} from the step, {} from the range",
             part(bound.step_relative),

@@ -5,9 +5,9 @@
 //!
 //! | rule | what is summed | where it is right |
 //! |---|---|---|
-//! | [`Rule::Summation`] | Δλ Σ S(λᵢ) w(λᵢ) | CIE 15:2018, 7.1: equal steps of 1 nm or 5 nm. The default there |
+//! | [`Rule::Summation`] | Δλ Σ S(λᵢ) w(λᵢ) | CIE 15:2018, 7.1: equal steps of 1 nm or 5 nm. The default up to 5 nm |
 //! | [`Rule::Trapezoid`] | trapezoids of the product S·w, the ends of a range or band interpolated | equal or unequal steps |
-//! | [`Rule::Exact`] | the integral of the straight lines between samples times those between the table's entries, without further error | unequal or coarse steps. The default on irregular grids |
+//! | [`Rule::Exact`] | the integral of the straight lines between samples times those between the table's entries, without further error | unequal or coarse steps. The default there |
 //! | [`Rule::Lines`] | Σ S(λᵢ) w(λᵢ) | line spectra; the only rule for them |
 //!
 //! Where the weighting is not tabulated it is zero. Between its entries it is a straight line.
@@ -154,10 +154,14 @@ impl Rule {
     }
 }
 
+/// The coarsest steps that are summed by default, nm: CIE 15:2018, 7.1 knows sums over 1 nm and 5 nm. (A little more than 5,
+/// for steps computed from printed wavelengths.)
+const COARSEST_SUM_NM: f64 = 5.0001;
+
 /// How to integrate: the rule (`None` chooses by the grid) and the range, both printed with every number.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Contract {
-    /// The rule; `None` takes [`Rule::Summation`] on equal steps and [`Rule::Exact`] otherwise.
+    /// The rule; `None` takes [`Rule::Summation`] on equal steps up to 5 nm and [`Rule::Exact`] otherwise.
     pub rule: Option<Rule>,
     /// Wavelengths in nm beyond which nothing counts, both ends included; `None` for all there is.
     pub range_nm: Option<(f64, f64)>,
@@ -195,7 +199,7 @@ impl Contract {
         let uniform = grid.step_nm().is_some();
         match self.rule {
             None if lines => Ok(Rule::Lines),
-            None if uniform => Ok(Rule::Summation),
+            None if grid.step_nm().is_some_and(|step| step <= COARSEST_SUM_NM) => Ok(Rule::Summation),
             None => Ok(Rule::Exact),
             Some(rule) if lines != (rule == Rule::Lines) => Err(RuleError::Sampling { rule, lines }),
             Some(Rule::Summation) if !uniform => Err(RuleError::NotUniform { widest_step_nm: grid.widest_step_nm() }),

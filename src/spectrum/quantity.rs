@@ -545,9 +545,9 @@ mod tests {
     fn photons_become_joules() {
         let u = unit("umol/m2/s/nm");
         assert!(u.photons);
-        // A mole of photons of 555 nm carries N_A·h·c/λ = 215 543 … J (CODATA: N_A·h·c = 0.119 626 565 582 J·m/mol).
+        // A mole of photons of 555 nm carries N_A·h·c/λ = 215 543 … J (CODATA: N_A·h·c = 0.119 626 565 638 697 J·m/mol, exact SI).
         let joule = u.to_si(555.0, 1.0);
-        assert!((joule / (0.119_626_565_582e-6 / 555e-9) - 1.0).abs() < 1e-9, "{joule}");
+        assert!((joule / (0.119_626_565_638_697e-6 / 555e-9) - 1.0).abs() < 1e-12, "{joule}");
     }
 
     #[test]

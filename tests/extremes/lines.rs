@@ -128,3 +128,19 @@ fn the_candela_is_where_the_si_puts_it() {
     let got = convert(Quantity::Flux, &line(555.016, 1.0)).value.efficacy_lm_per_w.expect("light");
     assert!((got - 683.0).abs() < 1e-3, "{got}");
 }
+
+#[test]
+fn a_line_is_its_own_dominant_wavelength_with_a_purity_of_one() {
+    for (wavelength, ..) in PRINTED {
+        let got = convert(Quantity::Flux, &line(wavelength, 1.0)).value.dominant.expect("coloured");
+        assert!((got.excitation_purity - 1.0).abs() < 1e-9, "{wavelength} nm: {got:?}");
+        // Spectral light is no purple, of which alone the complementary wavelength (negative) is told. Beyond 699 nm the
+        // standard's chromaticities stand still, and before 380 nm they turn back: no more than the end can be told.
+        let (low, high) = match wavelength {
+            w if w >= 699.0 => (698.9, w),
+            w if w <= 380.0 => (360.0, 410.0),
+            w => (w - 1e-6, w + 1e-6),
+        };
+        assert!((low..=high).contains(&got.wavelength_nm), "{wavelength} nm: {got:?}");
+    }
+}

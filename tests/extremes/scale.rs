@@ -83,7 +83,11 @@ fn ratios_do_not_depend_on_the_scale_of_the_values() {
         same(&result["rgb"], &want["rgb"], &format!("{what}: rgb"), &mut compared);
         same(&result["integration"], &want["integration"], &format!("{what}: integration"), &mut compared);
         assert!(compared > 150, "{what}: {compared} numbers compared");
-        let codes = |findings: &[photopic::finding::Finding]| findings.iter().map(|f| f.code).collect::<Vec<_>>();
+        // Photons are counted in the 1e18 per joule: their number alone leaves the range of a double, which is said.
+        let codes = |findings: &[photopic::finding::Finding]| {
+            findings.iter().map(|f| f.code).filter(|c| *c != "P011").collect::<Vec<_>>()
+        };
+        assert!(exponent > 280 || !has(&got.findings, "P011"), "{what}: {:?}", got.findings);
         assert_eq!(codes(&got.findings), codes(&one.findings), "{what}");
         // Amounts move with the values; factors of ten are rounded by half a unit in the last place, sums by a few.
         let amounts = |c: &photopic::conversion::Conversion| {

@@ -81,7 +81,7 @@ pub(super) struct Reading {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Integration")]
 pub(super) struct Integration {
-    /// Rule; by default CIE 15 summation on equal steps, the exact integral of straight lines on unequal ones.
+    /// Rule; by default CIE 15 summation on equal steps up to 5 nm, else the exact integral of straight lines.
     #[arg(long, value_enum)]
     pub rule: Option<RuleArg>,
     /// Wavelengths that count, such as 380-780 (nm); by default all there are.

@@ -40,9 +40,9 @@ pub(super) struct Refused {
 impl Refused {
     pub(super) fn new(path: &str, error: format::Error) -> Self {
         let located = error.in_file(path);
-        let message = located.to_string();
-        let finding = Finding::error("S000", message.clone()).at(located.location().clone());
-        Self { message, finding: Box::new(finding) }
+        let mut finding = Finding::error("S000", located.kind().to_string()).at(located.location().clone());
+        finding.hint = located.hint().map(str::to_owned);
+        Self { message: located.to_string(), finding: Box::new(finding) }
     }
 
     pub(super) fn plain(path: &str, message: &str) -> Self {

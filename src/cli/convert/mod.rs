@@ -102,6 +102,7 @@ pub(super) fn run(arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
                 Err(refused) => {
                     notes.refuse(&refused.message);
                     writer.finding(*refused.finding);
+                    writer.input(Input { path: path.clone(), sha256: None });
                 }
                 Ok(Opened::Done(done, input, findings)) => {
                     let mut all = findings;
@@ -132,7 +133,8 @@ pub(super) fn run(arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
     }
     notes.progress.finish_and_clear();
     let written = writer.end()?;
-    sink.finish(written > 0)?;
+    // A JSON document without results still says why; a table or a text without any says nothing.
+    sink.finish(written > 0 || job.form == Form::Json)?;
     if let (Some(path), Some(format)) = (&arguments.output.plot, plot) {
         let picture = picture::draw(&kept, job.converter.settings(), arguments.output.plot_kind, format)?;
         output::write_file(path, &picture, &arguments.files)?;
@@ -155,34 +157,36 @@ fn open(job: &Job<'_>, path: &str, progress: &ProgressBar) -> Result<Opened, Ref
         Loaded::Stream(stream, checksum) => Ok(Opened::Stream(stream, checksum)),
         Loaded::Spectra(items, input, findings) => {
             let several = items.len() > 1;
-            let chosen = select(path, items, &reading.select)?;
-            let done = chosen.par_iter().map(|item| item_done(job, path, item, several)).collect();
+            let (chosen, missing) = select(path, items, &reading.select);
+            let mut done: Vec<Result<Done, Refused>> =
+                chosen.par_iter().map(|item| item_done(job, path, item, several)).collect();
+            done.extend(missing.map(Err));
             let findings = findings.into_iter().filter(|f| job.tells(f)).map(|f| in_file(f, path)).collect();
             Ok(Opened::Done(done, input, findings))
         }
     }
 }
 
-/// The spectra asked for by name.
-fn select(path: &str, items: Vec<Item>, names: &[String]) -> Result<Vec<Item>, Refused> {
-    if names.is_empty() {
-        return Ok(items);
-    }
+/// The spectra asked for by name, and a word on each name that is not there.
+fn select(path: &str, items: Vec<Item>, names: &[String]) -> (Vec<Item>, Option<Refused>) {
     let known: Vec<String> = items.iter().map(|i| i.measured.name.clone()).collect();
-    let chosen: Vec<Item> = items.into_iter().filter(|i| wanted(&i.measured.name, names)).collect();
-    if chosen.is_empty() {
+    let missing: Vec<&str> =
+        names.iter().filter(|n| !known.iter().any(|k| same_name(k, n))).map(String::as_str).collect();
+    let refused = (!missing.is_empty()).then(|| {
         let some: Vec<&str> = known.iter().take(12).map(String::as_str).collect();
         let more = if known.len() > some.len() { ", …" } else { "" };
-        return Err(Refused::plain(
-            path,
-            &format!("no spectrum named {}; expected one of {}{more}", names.join(" or "), some.join(", ")),
-        ));
-    }
-    Ok(chosen)
+        let message = format!("no spectrum named {}; expected one of {}{more}", missing.join(" or "), some.join(", "));
+        Refused::plain(path, &message)
+    });
+    (items.into_iter().filter(|i| wanted(&i.measured.name, names)).collect(), refused)
+}
+
+fn same_name(a: &str, b: &str) -> bool {
+    a.to_lowercase() == b.to_lowercase()
 }
 
 fn wanted(name: &str, names: &[String]) -> bool {
-    names.is_empty() || names.iter().any(|n| n.to_lowercase() == name.to_lowercase())
+    names.is_empty() || names.iter().any(|n| same_name(n, name))
 }
 
 fn in_file(mut finding: Finding, path: &str) -> Finding {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::input::{Counted, Refused};
 use super::writer::Writer;
-use super::{Done, Job, convert, in_file, render, wanted};
+use super::{Done, Job, convert, in_file, render, same_name, wanted};
 use crate::cli::Failure;
 use crate::cli::notes::Notes;
 use crate::finding::{Checked, Finding, Location};
@@ -62,7 +62,7 @@ pub(super) fn convert_stream(
     };
     let mut errors = Vec::new();
     let mut failures = 0_usize;
-    let mut chosen = 0_usize;
+    let mut missing: Vec<&String> = reading.select.iter().collect();
     let grid = Arc::clone(stream.grid());
     loop {
         let batch = match stream.next_batch(ROWS_AT_ONCE) {
@@ -75,6 +75,9 @@ pub(super) fn convert_stream(
                 break;
             }
         };
+        if !missing.is_empty() {
+            missing.retain(|name| !batch.iter().flatten().any(|row| same_name(&row.name, name)));
+        }
         let done: Vec<Option<Result<Done, Refused>>> = batch
             .into_par_iter()
             .map(|row| match row {
@@ -83,7 +86,6 @@ pub(super) fn convert_stream(
             })
             .collect();
         for one in done.into_iter().flatten() {
-            chosen += 1;
             match one {
                 Ok(one) => {
                     writer.result(&one.bytes)?;
@@ -105,8 +107,9 @@ pub(super) fn convert_stream(
         notes.say(&format!("{path}: {message}"));
         errors.push(Finding::error("S000", message).at(Location::default().in_file(path)));
     }
-    if chosen == 0 && !reading.select.is_empty() {
-        let refused = Refused::plain(path, &format!("no spectrum named {}", reading.select.join(" or ")));
+    if !missing.is_empty() {
+        let names: Vec<&str> = missing.iter().map(|n| n.as_str()).collect();
+        let refused = Refused::plain(path, &format!("no spectrum named {}", names.join(" or ")));
         notes.refuse(&refused.message);
         errors.push(*refused.finding);
     }

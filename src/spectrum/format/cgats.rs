@@ -13,7 +13,7 @@ use super::field::{Field, Separator, split};
 use super::header::{self, AxisUnit};
 use super::instrument;
 use super::rows::Negatives;
-use super::text::place;
+use super::text::{Places, place};
 use super::{Entry, Format, ReadOptions, SpectrumFile, item};
 use crate::finding::{Checked, Finding, Location};
 
@@ -144,7 +144,9 @@ impl Reader<'_> {
                     _ => Ok(fields),
                 };
             }
-            fields.extend(split(line.text, Separator::Blanks).map(|f| (f.text().into_owned(), line.place(f.start))));
+            let mut places = Places::new(line.text, line.number);
+            let names = split(line.text, Separator::Blanks);
+            fields.extend(names.map(|f| (f.text().into_owned(), places.of(f.start))));
         }
         Err(unended(begin, "END_DATA_FORMAT"))
     }

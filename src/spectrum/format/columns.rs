@@ -9,6 +9,7 @@ use super::error::{Error, ErrorKind};
 use super::field::{Field, split};
 use super::header::{self, AxisUnit, UnitText, ValueHeading};
 use super::number::{self, Cell};
+use super::text::Places;
 use super::{Entry, ReadOptions, item};
 use crate::finding::{Finding, Location};
 
@@ -16,6 +17,7 @@ use crate::finding::{Finding, Location};
 struct Column {
     cell: usize,
     heading: ValueHeading,
+    place: Location,
     /// Which of the table's wavelength columns it belongs to.
     axis: usize,
     values: Vec<f64>,
@@ -201,41 +203,43 @@ fn plan(
     let mut columns = Vec::new();
     let new_axis = |cell, unit, place| AxisColumn { cell, unit, place, axis: Axis::default(), rows: Vec::new() };
     let Some(record) = heading else {
-        axes.push(new_axis(0, AxisUnit::NotStated, first));
-        let column = |cell| Column { cell, heading: ValueHeading::default(), axis: 0, values: Vec::new() };
+        let column =
+            |cell| Column { cell, heading: ValueHeading::default(), place: first.clone(), axis: 0, values: Vec::new() };
+        axes.push(new_axis(0, AxisUnit::NotStated, first.clone()));
         return (axes, (1..width).map(column).collect());
     };
     let fields: Vec<_> = split(record.text, dialect.separator).collect();
-    let place = |field: &Field<'_>| record.place(field.start);
+    let mut places = Places::new(record.text, record.line);
     let units: Vec<Option<AxisUnit>> = fields.iter().map(|f| header::axis(&f.text())).collect();
     // A lone wavelength column at the end governs the columns before it; without any, the first column is one.
     let lone_last = units.iter().rposition(Option::is_some) == Some(fields.len() - 1)
         && units.iter().filter(|u| u.is_some()).count() == 1;
     if lone_last || units.iter().all(Option::is_none) {
         let cell = if lone_last { fields.len() - 1 } else { 0 };
-        axes.push(new_axis(cell, units[cell].clone().unwrap_or(AxisUnit::NotStated), place(&fields[cell])));
+        axes.push(new_axis(cell, units[cell].clone().unwrap_or(AxisUnit::NotStated), record.place(fields[cell].start)));
     }
     let lone = !axes.is_empty();
     for (cell, (field, unit)) in fields.iter().zip(units).enumerate() {
         if lone && cell == axes[0].cell {
             continue;
         }
+        let place = places.of(field.start);
         if let Some(unit) = unit {
-            axes.push(new_axis(cell, unit, place(field)));
+            axes.push(new_axis(cell, unit, place));
             continue;
         }
         let Some(axis) = axes.len().checked_sub(1) else {
             let message = format!("the column `{}` before the wavelengths was not read", field.text());
-            findings.push(Finding::info("S009", message).at(place(field)));
+            findings.push(Finding::info("S009", message).at(place));
             continue;
         };
         let heading = header::value(&field.text());
         if let Some(unit) = &heading.not_understood {
             let finding =
                 Finding::warning("S006", format!("`{unit}` is no unit of a spectrum that is understood here"));
-            findings.push(finding.at(place(field)).hint("say the unit with --unit"));
+            findings.push(finding.at(place.clone()).hint("say the unit with --unit"));
         }
-        columns.push(Column { cell, heading, axis, values: Vec::new() });
+        columns.push(Column { cell, heading, place, axis, values: Vec::new() });
     }
     (axes, columns)
 }
@@ -354,7 +358,9 @@ impl Assembly<'_, '_> {
                 self.findings.push(axis::reversed(axis.place.clone()));
             }
         }
+        // Grids of the wavelength column at hand, and the first of all: another column often holds the same wavelengths.
         let mut shared: Vec<Shared> = Vec::new();
+        let mut first: Option<Arc<Grid>> = None;
         let mut entries = Vec::with_capacity(columns.len());
         for column in columns {
             let axis = &axes[column.axis];
@@ -370,19 +376,22 @@ impl Assembly<'_, '_> {
             } else {
                 rows
             };
-            let known = shared.iter().find(|s| s.axis == column.axis && s.rows == rows).map(|s| Arc::clone(&s.grid));
+            shared.retain(|s| s.axis == column.axis);
+            let known = shared.iter().find(|s| s.rows == rows).map(|s| Arc::clone(&s.grid));
             let grid = match known {
                 Some(grid) => grid,
                 None => {
                     let grid = axis::grid(nanometres[column.axis][rows.clone()].to_vec(), &axis.place)?;
-                    // Two wavelength columns may hold the same wavelengths.
-                    let grid = shared.iter().find(|s| *s.grid == *grid).map_or(grid, |s| Arc::clone(&s.grid));
+                    let grid = first.iter().find(|f| ***f == *grid).map_or(grid, Arc::clone);
                     shared.push(Shared { axis: column.axis, rows, grid: Arc::clone(&grid) });
                     grid
                 }
             };
-            let spectrum = Spectrum::density(grid, values).map_err(|e| Error::new(axis.place.clone(), e))?;
-            entries.push(entry(column.heading, spectrum, axis.place.clone()));
+            first.get_or_insert_with(|| Arc::clone(&grid));
+            let ValueHeading { name, quantity, unit, .. } = column.heading;
+            let location = column.place;
+            let spectrum = Spectrum::density(grid, values).map_err(|e| Error::new(location.clone(), e))?;
+            entries.push(Entry { name, spectrum, quantity, unit, printed: Vec::new(), metadata: Vec::new(), location });
         }
         if entries.is_empty() {
             let line = self.records.last().map_or(1, |r| r.line);
@@ -399,7 +408,7 @@ impl Assembly<'_, '_> {
             // Separators at the ends of lines make a column without name and values: nothing is lost with it.
             if !name.is_empty() {
                 let finding = Finding::warning("S009", format!("the column `{name}` holds no value and was not read"));
-                self.findings.push(finding.at(axis.place.clone()));
+                self.findings.push(finding.at(column.place.clone()));
             }
             return Ok(None);
         };
@@ -432,9 +441,4 @@ impl Assembly<'_, '_> {
                 .with_hint("delete the row, or fill in a value you can answer for"),
         }
     }
-}
-
-fn entry(heading: ValueHeading, spectrum: Spectrum, location: Location) -> Entry {
-    let ValueHeading { name, quantity, unit, .. } = heading;
-    Entry { name, spectrum, quantity, unit, printed: Vec::new(), metadata: Vec::new(), location }
 }

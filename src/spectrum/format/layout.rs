@@ -82,6 +82,28 @@ fn forced(records: &[Record<'_>], dialect: Dialect) -> Result<RowHeading, Error>
     Err(Error::whole(ErrorKind::NoSpectrum { expected }))
 }
 
+/// Whether a heading says that names of spectra stand below it.
+fn heads_names(corner: &str) -> bool {
+    const WORDS: [&str; 15] = [
+        "name",
+        "id",
+        "sample",
+        "label",
+        "title",
+        "no",
+        "nr",
+        "number",
+        "index",
+        "lamp",
+        "spectrum",
+        "file",
+        "time",
+        "timestamp",
+        "date",
+    ];
+    corner.to_lowercase().split(|c: char| !c.is_alphabetic()).any(|word| WORDS.contains(&word))
+}
+
 enum Verdict {
     Rows,
     Columns,
@@ -153,8 +175,7 @@ impl Candidate {
         if self.axis_below(records) {
             return Ok(Verdict::Neither);
         }
-        const NAMES: [&str; 8] = ["name", "id", "sample", "label", "title", "no", "nr", "number"];
-        if numeric && ordered && bare && stated.is_none() && !NAMES.contains(&corner.to_lowercase().as_str()) {
+        if numeric && ordered && bare && stated.is_none() && !heads_names(corner) {
             return Err(self.ambiguous(records));
         }
         Ok(Verdict::Rows)
@@ -219,8 +240,10 @@ impl Candidate {
 
     /// Whether a wavelength column begins below: then this is a line of facts about the columns, such as their Ra.
     fn axis_below(&self, records: &[Record<'_>]) -> bool {
-        records[self.index + 1..].iter().take(LABELS).any(|record| {
-            split(record.text, self.dialect.separator).next().is_some_and(|f| header::axis(f.raw).is_some())
+        let first = |record: &Record<'_>| split(record.text, self.dialect.separator).next().map(|f| f.raw.to_owned());
+        records[self.index + 1..].windows(2).take(LABELS).any(|pair| {
+            first(&pair[0]).is_some_and(|cell| header::axis(&cell).is_some())
+                && first(&pair[1]).is_some_and(|cell| number::parse(&cell, self.dialect.decimal).number().is_some())
         })
     }
 

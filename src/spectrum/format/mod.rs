@@ -6,7 +6,26 @@
 //!
 //! [`read`] takes a whole input, [`open`] also streams tables with one spectrum per row.
 //!
-//! Findings of this module:
+//! # Delimited text
+//!
+//! What the user does not say ([`ReadOptions`]) is told by these rules; where they do not settle it, the input is refused.
+//!
+//! - **Lines.** Blank lines and those that begin with `#`, `%`, `//` or `!` are skipped. `key,value` and `key: value` lines above
+//!   the table are metadata; a key `unit` or `quantity` among them holds for all spectra. After the table nothing may follow.
+//! - **Separator.** A leading `sep=` line says it. Else, of TAB, `;`, `,` and runs of blanks, the one under which the longest run
+//!   of neighbouring lines has the same number (two or more) of cells, numbers among them; of equal ones the first in this order.
+//! - **Decimal mark.** Where commas do not separate, a comma in a number is the decimal mark if no number has a point. It is
+//!   never a thousands mark. Rows of three or more integers between commas, without a heading, are ambiguous.
+//! - **Layout.** One spectrum per column under a wavelength column; or one per row, where a line has three or more cells (two, if
+//!   they state nm) that are wavelengths alike but for the number (`380`, `380nm`, `nm380`, `R_380`), in order, numbers below. A
+//!   cell such as `wavelength` heads the column below it. Bare numbers without labels lie in rows only if the first row is
+//!   evenly spaced and the first column is out of order; where both are in order the table is ambiguous.
+//! - **Wavelengths** have the unit of their heading or unit row, else nm by convention ([S003](#findings)). They may descend. Several
+//!   wavelength columns each govern the columns up to the next one.
+//! - **Values** have the quantity and unit of their heading, unit row, or metadata; nothing is guessed. Empty cells (`NA`, `-`)
+//!   make a spectrum shorter at its ends, and are refused between its values and in rows.
+//!
+//! # Findings
 //!
 //! | code | severity | meaning |
 //! |---|---|---|

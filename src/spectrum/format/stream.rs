@@ -77,6 +77,9 @@ impl<R: Read> Source<R> {
     fn fill(&mut self, count: usize) -> Result<(), Error> {
         let read = self.reader.by_ref().take(count as u64).read_to_end(&mut self.buffer)?;
         self.ended = read < count;
+        if self.reader.malformed {
+            return Err(Error::whole(ErrorKind::NotText { found: "malformed UTF-16" }));
+        }
         Ok(())
     }
 

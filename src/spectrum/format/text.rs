@@ -99,6 +99,28 @@ pub(super) fn place(text: &str, first_line: u64, offset: usize) -> Location {
     Location::at(line, before[start..].chars().count() as u64 + 1)
 }
 
+/// Places of ascending byte offsets of one text: [`place`] for many cells of a long line without starting anew at each.
+pub(super) struct Places<'a> {
+    text: &'a str,
+    at: usize,
+    line: u64,
+    column: u64,
+}
+
+impl<'a> Places<'a> {
+    pub(super) fn new(text: &'a str, first_line: u64) -> Self {
+        Self { text, at: 0, line: first_line, column: 1 }
+    }
+
+    pub(super) fn of(&mut self, offset: usize) -> Location {
+        for c in self.text.get(self.at..offset).unwrap_or_default().chars() {
+            (self.line, self.column) = if c == '\n' { (self.line + 1, 1) } else { (self.line, self.column + 1) };
+        }
+        self.at = offset;
+        Location::at(self.line, self.column)
+    }
+}
+
 /// A reader that hands out UTF-8 whatever of UTF-16, UTF-8 with mark or old line ends comes in. Bytes that are not UTF-8
 /// pass unchanged: [`decode_line`] settles them.
 pub(super) struct Utf8Reader<R> {
@@ -109,6 +131,8 @@ pub(super) struct Utf8Reader<R> {
     taken: usize,
     started: bool,
     ended: bool,
+    /// UTF-16 with a half character in it was met.
+    pub malformed: bool,
 }
 
 /// Bytes taken from the inner reader at a time.
@@ -116,7 +140,16 @@ const BLOCK: usize = 256 * 1024;
 
 impl<R: Read> Utf8Reader<R> {
     pub(super) fn new(inner: R) -> Self {
-        Self { inner, decoder: None, raw: Vec::new(), ready: Vec::new(), taken: 0, started: false, ended: false }
+        Self {
+            inner,
+            decoder: None,
+            raw: Vec::new(),
+            ready: Vec::new(),
+            taken: 0,
+            started: false,
+            ended: false,
+            malformed: false,
+        }
     }
 
     /// Reads into `self.raw` until `wanted` bytes are there or the input ends.
@@ -160,7 +193,8 @@ impl<R: Read> Utf8Reader<R> {
         };
         let room = decoder.max_utf8_buffer_length(self.raw.len()).unwrap_or(4 * BLOCK);
         self.ready.resize(room, 0);
-        let (_, read, written, _) = decoder.decode_to_utf8(&self.raw, &mut self.ready, self.ended);
+        let (_, read, written, malformed) = decoder.decode_to_utf8(&self.raw, &mut self.ready, self.ended);
+        self.malformed |= malformed;
         self.ready.truncate(written);
         self.raw.drain(..read);
         Ok(())
@@ -177,5 +211,37 @@ impl<R: Read> Read for Utf8Reader<R> {
         out[..count].copy_from_slice(&self.ready[self.taken..self.taken + count]);
         self.taken += count;
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_count_characters_and_lines() {
+        let text = "µ,b\nçd,e";
+        let mut places = Places::new(text, 7);
+        for (offset, line, column) in [(0, 7, 1), (3, 7, 3), (5, 8, 1), (7, 8, 2), (9, 8, 4)] {
+            assert_eq!(place(text, 7, offset), Location::at(line, column), "{offset}");
+            assert_eq!(places.of(offset), Location::at(line, column), "{offset}");
+        }
+        // Inside of a character and beyond the end: a place all the same.
+        assert_eq!(place(text, 1, 1).line, Some(2));
+        assert_eq!(place(text, 1, 99).line, Some(2));
+    }
+
+    #[test]
+    fn encodings_are_told() {
+        let text = |bytes: &[u8]| decode(bytes).map(|t| (t.text.into_owned(), t.finding.is_some()));
+        assert_eq!(text(b"a\xb5b"), Ok(("aµb".to_owned(), true)));
+        assert_eq!(text("aµb".as_bytes()), Ok(("aµb".to_owned(), false)));
+        assert_eq!(text(b"\xef\xbb\xbfa"), Ok(("a".to_owned(), false)));
+        assert_eq!(text(b"\xff\xfea\0\xb5\0"), Ok(("aµ".to_owned(), false)));
+        assert_eq!(text(b"a\0b\0"), Ok(("ab".to_owned(), false)));
+        assert_eq!(text(b"\0a\0b"), Ok(("ab".to_owned(), false)));
+        assert_eq!(text(b"a\rb\r"), Ok(("a\nb\n".to_owned(), false)));
+        assert!(text(b"ab\0cd").is_err());
+        assert!(text(b"\xd0\xcf\x11\xe0rest").is_err());
     }
 }
