@@ -3,7 +3,9 @@
 use photopic::finding::Finding;
 use photopic::spectrum::Quantity;
 
-use super::{K_M, close, convert, has, photopic, sampled, sound_json};
+use photopic::spectrum::integrate::Rule;
+
+use super::{K_M, close, convert, convert_with, has, photopic, rule, sampled, sound_json};
 
 /// V(λ), CIE 018:2019, Table 1.
 const V_450: f64 = 0.038;
@@ -27,7 +29,7 @@ fn share(finding: &Finding) -> f64 {
 fn negative_samples_are_kept_counted_and_their_effect_is_told() {
     // 450 … 650 by 50 nm with the summation: K_m · 50 · (V₄₅₀ + V₅₀₀ + V₅₅₀ + V₆₀₀ − ½V₆₅₀).
     let spectrum = sampled(450.0, 650.0, 50.0, |w| if w == 650.0 { -0.5 } else { 1.0 });
-    let got = convert(Quantity::Irradiance, &spectrum);
+    let got = convert_with(rule(Rule::Summation), Quantity::Irradiance, &spectrum);
     sound_json(&got, "noise");
     let positive = V_450 + V_500 + V_550 + V_600;
     let want = positive - 0.5 * V_650;

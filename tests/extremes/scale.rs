@@ -6,7 +6,9 @@ use photopic::spectrum::format::{self, ReadOptions};
 use photopic::spectrum::{Grid, Quantity, Spectrum};
 use serde_json::Value;
 
-use super::{convert, density, has, photopic, sampled, sound_json};
+use photopic::spectrum::integrate::Rule;
+
+use super::{convert, convert_with, density, has, photopic, rule, sampled, sound_json};
 
 fn office_led() -> Spectrum {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/spectra/office-led.csv");
@@ -146,12 +148,12 @@ fn values_below_the_smallest_normal_double_give_no_nonsense() {
 
 #[test]
 fn one_huge_sample_among_small_ones_is_its_line() {
-    // 1e30 at 600 nm beside ones: V(600) = 0.631 (CIE 018:2019) up to 1e-28.
+    // 1e30 at 600 nm beside ones, summed: V(600) = 0.631 (CIE 018:2019) up to 1e-28.
     let spectrum = density(
         (0..=40).map(|i| 400.0 + 10.0 * f64::from(i)).collect(),
         (0..=40).map(|i| if i == 20 { 1e30 } else { 1.0 }).collect(),
     );
-    let got = convert(Quantity::Flux, &spectrum);
+    let got = convert_with(rule(Rule::Summation), Quantity::Flux, &spectrum);
     sound_json(&got, "a spike");
     assert!((photopic(&got.value) / (683.002 * 10.0 * 0.631 * 1e30) - 1.0).abs() < 1e-14);
 }
