@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use photopic::spectrum::format::{self, ReadOptions};
+use photopic::spectrum::integrate::Rule;
 use photopic::spectrum::{Grid, Quantity, Spectrum};
 use serde_json::Value;
-
-use photopic::spectrum::integrate::Rule;
 
 use super::{convert, convert_with, density, has, photopic, rule, sampled, sound_json};
 
