@@ -103,7 +103,7 @@ mod colorimetry {
         use photopic::spectrum::Sampling;
         use photopic::spectrum::integrate::Contract;
 
-        use super::{C2, SAMPLES};
+        use super::{C2, SAMPLES, kelvin, observer_plan};
         use crate::samples::{MEAN_RF, assert_mean, grid, rows};
 
         const COUNT: usize = 100;
@@ -112,11 +112,13 @@ mod colorimetry {
         #[divan::bench]
         fn plan(bencher: Bencher) {
             let values = rows(COUNT);
+            let observer = observer_plan();
             let plan = Plan::new(&grid(), Sampling::Density, &Contract::default(), C2).expect("compiles");
             let mut out = vec![0.0; COUNT];
+            kelvin(&observer, &values[..SAMPLES]);
             bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
                 for (row, out) in black_box(&values).chunks_exact(SAMPLES).zip(&mut out) {
-                    *out = plan.evaluate(row).expect("a white light").rf;
+                    *out = plan.evaluate(row, kelvin(&observer, row)).expect("a white light").rf;
                 }
                 assert_mean(&out, MEAN_RF, 0.02);
             });

@@ -131,21 +131,24 @@ fn bose(a: f64, m: f64) -> [f64; 3] {
         return [b / a, db, ddb * a];
     }
     // e⁻ˢ form: f = 1/(eˢ − 1) = e⁻ˢ/(1 − e⁻ˢ), f′ = −f(1 + f), f″ = f(1 + f)(1 + 2f).
-    let f = (-s).exp() / -(-s).exp_m1();
+    // 1 − e⁻ˢ loses a factor of 1/s at most, twenty units in the last place.
+    let e = (-s).exp();
+    let f = e / (1.0 - e);
     let df = -a * f * (1.0 + f);
     let ddf = a * a * f * (1.0 + f) * (1.0 + 2.0 * f);
     [m * f, f + m * df, 2.0 * df + m * ddf]
 }
 
-fn locus() -> &'static [Knot] {
-    static LOCUS: OnceLock<Vec<Knot>> = OnceLock::new();
-    LOCUS.get_or_init(|| (0..KNOTS).map(|i| evaluate(STEP_MIRED * i as f64)).collect())
+/// A knot of the locus, calculated when it is first asked for: one CCT needs about eighty of them.
+fn knot(index: usize) -> &'static Knot {
+    static LOCUS: [OnceLock<Knot>; KNOTS] = [const { OnceLock::new() }; KNOTS];
+    LOCUS[index].get_or_init(|| evaluate(STEP_MIRED * index as f64))
 }
 
 /// Quintic Hermite interpolation of the locus between two knots; the error is below 1e-12 in (u, v), held by a test.
-fn interpolate(knots: &[Knot], mired: f64) -> Knot {
+fn interpolate(mired: f64) -> Knot {
     let i = ((mired / STEP_MIRED) as usize).min(KNOTS - 2);
-    let (a, b) = (&knots[i], &knots[i + 1]);
+    let (a, b) = (knot(i), knot(i + 1));
     let t = mired / STEP_MIRED - i as f64;
     let h = STEP_MIRED;
     let mut out = Knot::default();
@@ -169,7 +172,7 @@ fn interpolate(knots: &[Knot], mired: f64) -> Knot {
 #[must_use]
 pub fn planckian_uv(kelvin: f64, c2: SecondRadiation) -> [f64; 2] {
     let mired = 1e6 / kelvin * (c2.metre_kelvin() / SECOND_RADIATION_ITS90);
-    interpolate(locus(), mired).p
+    interpolate(mired).p
 }
 
 /// The nearest blackbody to a chromaticity (u, v) 1960, by minimisation of the distance.
@@ -183,18 +186,12 @@ pub fn nearest(uv: [f64; 2], c2: SecondRadiation) -> Result<Cct, Undefined> {
     if !uv.iter().all(|v| v.is_finite()) {
         return Err(Undefined::Black);
     }
-    let knots = locus();
-    let distance = |k: &Knot| (k.p[0] - uv[0]).powi(2) + (k.p[1] - uv[1]).powi(2);
-    // Every eighth knot first: the locus is smooth on that scale, the distance has no second minimum in between.
-    const STRIDE: usize = 8;
-    let coarse = nearest_index(knots, (0..KNOTS).step_by(STRIDE), distance);
-    let range = coarse.saturating_sub(STRIDE)..(coarse + STRIDE + 1).min(KNOTS);
-    let best = nearest_index(knots, range, distance);
+    let best = closest(KNOTS, 8, |i| square_distance(knot(i).p, uv));
     let (mut low, mut high) =
         (STEP_MIRED * best.saturating_sub(1) as f64, STEP_MIRED * (best + 1).min(KNOTS - 1) as f64);
     // g(m) = (P − p)·P′ is half the derivative of the squared distance: negative before the minimum, positive after it.
     let mut mired = STEP_MIRED * best as f64;
-    let mut here = interpolate(knots, mired);
+    let mut here = interpolate(mired);
     for _ in 0..NEWTON_STEPS {
         let off = [here.p[0] - uv[0], here.p[1] - uv[1]];
         let g = off[0] * here.d[0] + off[1] * here.d[1];
@@ -208,7 +205,7 @@ pub fn nearest(uv: [f64; 2], c2: SecondRadiation) -> Result<Cct, Undefined> {
         let next = if slope > 0.0 && newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
         let moved = (next - mired).abs();
         mired = next;
-        here = interpolate(knots, mired);
+        here = interpolate(mired);
         if moved <= 1e-13 * mired {
             break;
         }
@@ -217,15 +214,25 @@ pub fn nearest(uv: [f64; 2], c2: SecondRadiation) -> Result<Cct, Undefined> {
     finish(mired, off, here.d, c2)
 }
 
-fn nearest_index(knots: &[Knot], among: impl Iterator<Item = usize>, distance: impl Fn(&Knot) -> f64) -> usize {
-    let mut best = (0, f64::INFINITY);
-    for i in among {
-        let d = distance(&knots[i]);
-        if d < best.1 {
-            best = (i, d);
+fn square_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)
+}
+
+/// The index below `count` of the smallest distance. Every `stride`-th is looked at first: the locus is smooth on that scale,
+/// the distance has no second minimum in between.
+fn closest(count: usize, stride: usize, distance: impl Fn(usize) -> f64) -> usize {
+    let smallest = |among: &mut dyn Iterator<Item = usize>| {
+        let mut best = (0, f64::INFINITY);
+        for i in among {
+            let d = distance(i);
+            if d < best.1 {
+                best = (i, d);
+            }
         }
-    }
-    best.0
+        best.0
+    };
+    let coarse = smallest(&mut (0..count).step_by(stride));
+    smallest(&mut (coarse.saturating_sub(stride)..(coarse + stride + 1).min(count)))
 }
 
 /// Checks the range and signs the distance: with m growing the locus runs towards red, and green is on its left.
@@ -273,13 +280,9 @@ pub fn ohno2013(uv: [f64; 2], c2: SecondRadiation) -> Result<Cct, Undefined> {
             })
             .collect()
     });
-    let distance = |i: usize| (table[i][1] - uv[0]).hypot(table[i][2] - uv[1]);
-    let mut best = 1;
-    for i in 1..OHNO_ENTRIES - 1 {
-        if distance(i) < distance(best) {
-            best = i;
-        }
-    }
+    let square = |i: usize| square_distance([table[i][1], table[i][2]], uv);
+    let distance = |i: usize| square(i).sqrt();
+    let best = closest(OHNO_ENTRIES, 32, square).clamp(1, OHNO_ENTRIES - 2);
     let ([t0, u0, v0], [t1, ..], [t2, u2, v2]) = (table[best - 1], table[best], table[best + 1]);
     let (d0, d1, d2) = (distance(best - 1), distance(best), distance(best + 1));
     // Triangle between the neighbours.
@@ -322,11 +325,10 @@ mod tests {
 
     #[test]
     fn the_interpolated_locus_is_the_exact_one() {
-        let knots = locus();
         let mut worst = 0.0_f64;
         for k in 0..2490 {
             let mired = 0.5 + f64::from(k);
-            let (exact, got) = (evaluate(mired), interpolate(knots, mired));
+            let (exact, got) = (evaluate(mired), interpolate(mired));
             worst = worst.max((exact.p[0] - got.p[0]).abs()).max((exact.p[1] - got.p[1]).abs());
         }
         assert!(worst < 1e-12, "{worst}");
@@ -373,6 +375,20 @@ mod tests {
                 let got = nearest(uv, SecondRadiation::Its90).expect("near the locus");
                 assert!((got.duv - duv).abs() < 1e-11, "{kelvin} {duv}: {got:?}");
                 assert!((got.kelvin / kelvin - 1.0).abs() < 1e-7, "{kelvin} {duv}: {got:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_strided_search_finds_what_a_full_one_does() {
+        for kelvin in [600.0, 1500.0, 2700.0, 4000.0, 6500.0, 15000.0, 200_000.0] {
+            let foot = evaluate(1e6 / kelvin);
+            let length = foot.d[0].hypot(foot.d[1]);
+            for step in -10..=10 {
+                let duv = 0.005 * f64::from(step);
+                let uv = [foot.p[0] - foot.d[1] / length * duv, foot.p[1] + foot.d[0] / length * duv];
+                let distance = |i: usize| square_distance(knot(i).p, uv);
+                assert_eq!(closest(KNOTS, 8, distance), closest(KNOTS, 1, distance), "{kelvin} K, Duv {duv}");
             }
         }
     }

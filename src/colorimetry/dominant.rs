@@ -1,5 +1,7 @@
 //! Dominant wavelength and excitation purity (CIE 15:2018, 9.2–9.3).
 
+use std::sync::OnceLock;
+
 use super::chromaticity;
 use super::observer::Observer;
 
@@ -18,10 +20,17 @@ pub struct Dominant {
 /// The spectral locus of an observer: wavelength in nm, x, y.
 #[must_use]
 pub fn spectral_locus(observer: Observer) -> Vec<[f64; 3]> {
-    let [x, y, z] = observer.colour_matching_functions();
-    (x.wavelengths_nm().iter())
-        .filter_map(|&w| chromaticity::xy([x.at(w), y.at(w), z.at(w)]).map(|[cx, cy]| [w, cx, cy]))
-        .collect()
+    locus(observer).to_vec()
+}
+
+fn locus(observer: Observer) -> &'static [[f64; 3]] {
+    static LOCI: [OnceLock<Vec<[f64; 3]>>; 4] = [const { OnceLock::new() }; 4];
+    LOCI[observer as usize].get_or_init(|| {
+        let [x, y, z] = observer.colour_matching_functions();
+        (x.wavelengths_nm().iter())
+            .filter_map(|&w| chromaticity::xy([x.at(w), y.at(w), z.at(w)]).map(|[cx, cy]| [w, cx, cy]))
+            .collect()
+    })
 }
 
 /// Dominant wavelength and purity of `xy` against the white point `white_xy`; `None` where the two coincide.
@@ -30,17 +39,17 @@ pub fn spectral_locus(observer: Observer) -> Vec<[f64; 3]> {
 /// violet end turns back on itself within 1e-3: of several cuts the one nearest to the colour counts. Where the ray meets the purple line, the wavelength is that of the opposite ray, negative.
 #[must_use]
 pub fn dominant(xy: [f64; 2], white_xy: [f64; 2], observer: Observer) -> Option<Dominant> {
-    let locus = spectral_locus(observer);
+    let locus = locus(observer);
     let direction = [xy[0] - white_xy[0], xy[1] - white_xy[1]];
     let distance = direction[0].hypot(direction[1]);
     if distance.is_nan() || distance <= ACHROMATIC {
         return None;
     }
     let (first, last) = (*locus.first()?, *locus.last()?);
-    if let Some((t, wavelength_nm)) = cut_locus(white_xy, direction, &locus) {
+    if let Some((t, wavelength_nm)) = cut_locus(white_xy, direction, locus) {
         return Some(Dominant { wavelength_nm, excitation_purity: 1.0 / t });
     }
-    let (_, complementary) = cut_locus(white_xy, [-direction[0], -direction[1]], &locus)?;
+    let (_, complementary) = cut_locus(white_xy, [-direction[0], -direction[1]], locus)?;
     let (t, _) = cut(white_xy, direction, [first[1], first[2]], [last[1], last[2]])?;
     Some(Dominant { wavelength_nm: -complementary, excitation_purity: 1.0 / t })
 }

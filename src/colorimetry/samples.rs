@@ -1,6 +1,6 @@
 //! Reflecting samples under a light: weights compiled per grid for any set of reflectance spectra.
 
-use crate::spectrum::integrate::{self, Contract, RuleError, Weighting, dot};
+use crate::spectrum::integrate::{Contract, Quadrature, RuleError, Weighting, dot};
 use crate::spectrum::{Grid, Sampling};
 
 use super::observer::Observer;
@@ -27,22 +27,19 @@ impl SamplePlan {
         contract: &Contract,
     ) -> Result<Self, RuleError> {
         let bars = observer.colour_matching_functions();
-        let compile = |w: &Weighting| integrate::weights(grid, sampling, w, contract);
-        let three = |reflectance: Option<&Weighting>| -> Result<[Vec<f64>; 3], RuleError> {
-            let [x, y, z] = &bars;
-            let of = |bar: &Weighting| match reflectance {
-                None => compile(bar),
-                Some(rho) => {
-                    let product: Vec<f64> =
-                        bar.wavelengths_nm().iter().zip(bar.values()).map(|(&w, v)| v * rho.at(w)).collect();
-                    compile(&Weighting::table(bar.wavelengths_nm().to_vec(), product))
-                }
-            };
-            Ok([of(x)?, of(y)?, of(z)?])
+        // The three functions are columns of one table.
+        let wavelengths = bars[0].wavelengths_nm();
+        let rule = Quadrature::new(grid, sampling, &bars[0], contract)?;
+        let under = |reflectance: &Weighting| {
+            let rho: Vec<f64> = wavelengths.iter().map(|&w| reflectance.at(w)).collect();
+            bars.each_ref().map(|bar| {
+                let product: Vec<f64> = rho.iter().zip(bar.values()).map(|(r, v)| r * v).collect();
+                rule.weights(&product)
+            })
         };
         Ok(Self {
-            white: three(None)?,
-            samples: reflectances.iter().map(|r| three(Some(r))).collect::<Result<_, _>>()?,
+            white: bars.each_ref().map(|bar| rule.weights(bar.values())),
+            samples: reflectances.iter().map(under).collect(),
         })
     }
 

@@ -77,6 +77,14 @@ impl Weighting {
         interpolate::linear(&self.wavelengths_nm, &self.values, wavelength_nm)
     }
 
+    /// The two entries between which a wavelength lies and their shares in the value there; none of either outside.
+    fn entries_at(&self, wavelength_nm: f64) -> [(usize, f64); 2] {
+        let x = &self.wavelengths_nm;
+        let i = interpolate::interval(x, wavelength_nm);
+        let t = (wavelength_nm - x[i]) / (x[i + 1] - x[i]);
+        if (0.0..=1.0).contains(&t) { [(i, 1.0 - t), (i + 1, t)] } else { [(i, 0.0), (i + 1, 0.0)] }
+    }
+
     /// First and last wavelength of the table, nm.
     #[must_use]
     pub fn range_nm(&self) -> (f64, f64) {
@@ -218,59 +226,131 @@ pub fn weights(
     weighting: &Weighting,
     contract: &Contract,
 ) -> Result<Vec<f64>, RuleError> {
-    let rule = contract.rule_on(grid, sampling)?;
-    let x = grid.wavelengths_nm();
-    let (low, high) = contract.range_nm.unwrap_or((0.0, UNBOUNDED_NM));
-    let at = |w: f64| if (low..=high).contains(&w) { weighting.at(w) } else { 0.0 };
-    let (table_low, table_high) = weighting.range_nm();
-    let (from, to) = (low.max(table_low).max(x[0]), high.min(table_high).min(x[x.len() - 1]));
-    Ok(match (rule, grid.step_nm()) {
-        (Rule::Summation, Some(step)) => x.iter().map(|&w| step * at(w)).collect(),
-        (Rule::Trapezoid, _) if weighting.sharp => trapezoid_weights(x, weighting, from, to),
-        (Rule::Trapezoid, _) => trapezoid_weights(x, weighting, low.max(x[0]), high.min(x[x.len() - 1])),
-        (Rule::Exact, _) => exact_weights(x, weighting, from, to),
-        (Rule::Summation | Rule::Lines, _) => x.iter().map(|&w| at(w)).collect(),
-    })
+    Ok(Quadrature::new(grid, sampling, weighting, contract)?.weights(&weighting.values))
 }
 
-/// Trapezoids of the product from `from` to `to`; at those ends the spectrum is interpolated and the weighting looked up.
-fn trapezoid_weights(x: &[f64], weighting: &Weighting, from: f64, to: f64) -> Vec<f64> {
-    let mut out = vec![0.0; x.len()];
-    for i in 0..x.len().saturating_sub(1) {
-        let (a, b) = (x[i].max(from), x[i + 1].min(to));
-        if a >= b {
-            continue;
-        }
-        let h = x[i + 1] - x[i];
-        for end in [a, b] {
-            let half = 0.5 * (b - a) * weighting.at(end);
-            let t = (end - x[i]) / h;
-            out[i] += half * (1.0 - t);
-            out[i + 1] += half * t;
-        }
-    }
-    out
+/// A rule on one grid for weightings tabulated at the same wavelengths.
+///
+/// Weights are linear in the entries of the table; their factors depend on wavelengths alone and are found once, however many
+/// columns the table has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quadrature {
+    samples: usize,
+    /// By sample, then by entry.
+    terms: Vec<Term>,
 }
 
-/// ∫ φᵢ w dλ for the hat function φᵢ of each sample: Simpson's rule is exact on each piece, the product being quadratic.
-fn exact_weights(x: &[f64], weighting: &Weighting, from: f64, to: f64) -> Vec<f64> {
-    let mut out = vec![0.0; x.len()];
-    for i in 0..x.len().saturating_sub(1) {
-        let (a, b) = (x[i].max(from), x[i + 1].min(to));
-        if a >= b {
-            continue;
-        }
-        let h = x[i + 1] - x[i];
-        for (p, q) in weighting.pieces(a, b) {
-            let (wp, wq) = (weighting.at(p), weighting.at(q));
-            let (tp, tq) = ((p - x[i]) / h, (q - x[i]) / h);
-            let sixth = (q - p) / 6.0;
-            let (wm, tm) = (0.5 * (wp + wq), 0.5 * (tp + tq));
-            out[i] += sixth * (wp * (1.0 - tp) + 4.0 * wm * (1.0 - tm) + wq * (1.0 - tq));
-            out[i + 1] += sixth * (wp * tp + 4.0 * wm * tm + wq * tq);
-        }
+/// What one entry of the table adds to the weight of one sample, per unit of its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Term {
+    sample: usize,
+    entry: usize,
+    factor: f64,
+}
+
+impl Quadrature {
+    /// The rule that `contract` means on `grid`, for weightings with the wavelengths of `weighting`.
+    ///
+    /// # Errors
+    /// [`RuleError`] where the contract's rule does not fit.
+    pub fn new(grid: &Grid, sampling: Sampling, weighting: &Weighting, contract: &Contract) -> Result<Self, RuleError> {
+        let rule = contract.rule_on(grid, sampling)?;
+        let x = grid.wavelengths_nm();
+        let (first, last) = grid.range_nm();
+        let (low, high) = contract.range_nm.unwrap_or((0.0, UNBOUNDED_NM));
+        let (table_low, table_high) = weighting.range_nm();
+        let (from, to) = (low.max(table_low).max(first), high.min(table_high).min(last));
+        Ok(match (rule, grid.step_nm()) {
+            (Rule::Summation, Some(step)) => Self::points(x, weighting, (low, high), step),
+            (Rule::Trapezoid, _) if weighting.sharp => Self::trapezoid(x, weighting, from, to),
+            (Rule::Trapezoid, _) => Self::trapezoid(x, weighting, low.max(first), high.min(last)),
+            (Rule::Exact, _) => Self::exact(x, weighting, from, to),
+            (Rule::Summation | Rule::Lines, _) => Self::points(x, weighting, (low, high), 1.0),
+        })
     }
-    out
+
+    /// The weighting at each sample times a step.
+    fn points(x: &[f64], weighting: &Weighting, (low, high): (f64, f64), step: f64) -> Self {
+        let mut out = Self { samples: x.len(), terms: Vec::new() };
+        for (i, &w) in x.iter().enumerate() {
+            if (low..=high).contains(&w) {
+                out.add(i, step, weighting, w);
+            }
+        }
+        out
+    }
+
+    /// Trapezoids of the product from `from` to `to`; at those ends the spectrum is interpolated and the weighting looked up.
+    fn trapezoid(x: &[f64], weighting: &Weighting, from: f64, to: f64) -> Self {
+        let mut out = Self { samples: x.len(), terms: Vec::new() };
+        for (i, w) in x.windows(2).enumerate() {
+            let (a, b) = (w[0].max(from), w[1].min(to));
+            if a >= b {
+                continue;
+            }
+            for end in [a, b] {
+                let half = 0.5 * (b - a);
+                let t = (end - w[0]) / (w[1] - w[0]);
+                out.add(i, half * (1.0 - t), weighting, end);
+                out.add(i + 1, half * t, weighting, end);
+            }
+        }
+        out.merged()
+    }
+
+    /// ∫ φᵢ w dλ for the hat function φᵢ of each sample. On each piece φ and w are straight lines, and the integral of their
+    /// product is (q − p)/6 · (φₚ(2wₚ + w_q) + φ_q(wₚ + 2w_q)).
+    fn exact(x: &[f64], weighting: &Weighting, from: f64, to: f64) -> Self {
+        let mut out = Self { samples: x.len(), terms: Vec::new() };
+        for (i, w) in x.windows(2).enumerate() {
+            let (a, b) = (w[0].max(from), w[1].min(to));
+            if a >= b {
+                continue;
+            }
+            let h = w[1] - w[0];
+            for (p, q) in weighting.pieces(a, b) {
+                let sixth = (q - p) / 6.0;
+                let (tp, tq) = ((p - w[0]) / h, (q - w[0]) / h);
+                for (sample, fp, fq) in [(i, 1.0 - tp, 1.0 - tq), (i + 1, tp, tq)] {
+                    out.add(sample, sixth * (2.0 * fp + fq), weighting, p);
+                    out.add(sample, sixth * (fp + 2.0 * fq), weighting, q);
+                }
+            }
+        }
+        out.merged()
+    }
+
+    /// Adds to the weight of `sample` a factor times the weighting at a wavelength.
+    fn add(&mut self, sample: usize, factor: f64, weighting: &Weighting, wavelength_nm: f64) {
+        let entries = weighting.entries_at(wavelength_nm).into_iter().filter(|(_, share)| *share != 0.0);
+        self.terms.extend(entries.map(|(entry, share)| Term { sample, entry, factor: factor * share }));
+    }
+
+    /// In order, one term for each pair.
+    fn merged(mut self) -> Self {
+        self.terms.sort_by_key(|t| (t.sample, t.entry));
+        self.terms.dedup_by(|next, kept| {
+            let same = (next.sample, next.entry) == (kept.sample, kept.entry);
+            if same {
+                kept.factor += next.factor;
+            }
+            same
+        });
+        self
+    }
+
+    /// One weight per sample for the weighting of these values, one per wavelength of the table.
+    ///
+    /// # Panics
+    /// Where there are fewer values than wavelengths.
+    #[must_use]
+    pub fn weights(&self, values: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.samples];
+        for term in &self.terms {
+            out[term.sample] += term.factor * values[term.entry];
+        }
+        out
+    }
 }
 
 /// Σ weightᵢ·valueᵢ in eight independent partial sums, which a compiler turns into vector code; the rounding error of a
@@ -288,6 +368,64 @@ pub fn dot(weights: &[f64], values: &[f64]) -> f64 {
     }
     let [a, b, c, d, e, f, g, h] = sums;
     ((a + e) + (b + f)) + ((c + g) + (d + h)) + rest
+}
+
+/// The weights of `N` integrals on one grid side by side, sample by sample: the integrals of many spectra as a product of
+/// matrices, (spectra × samples) · (samples × N).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrix<const N: usize> {
+    by_sample: Vec<[f64; N]>,
+}
+
+impl<const N: usize> Matrix<N> {
+    /// Spectra summed at a time: their sums fit the vector registers, and a weight once read serves them all.
+    const ROWS: usize = 4;
+
+    /// The columns, one [`weights`] each.
+    ///
+    /// # Panics
+    /// Where they differ in length.
+    #[must_use]
+    pub fn new(columns: [&[f64]; N]) -> Self {
+        let samples = columns.first().map_or(0, |c| c.len());
+        assert!(columns.iter().all(|c| c.len() == samples), "all weights are of one grid");
+        Self { by_sample: (0..samples).map(|i| columns.map(|c| c[i])).collect() }
+    }
+
+    /// The integrals of the spectra in `values`, one spectrum after the other, each as long as the grid.
+    ///
+    /// # Panics
+    /// Where `values` does not hold as many spectra as `out`.
+    pub fn integrals(&self, values: &[f64], out: &mut [[f64; N]]) {
+        let samples = self.by_sample.len();
+        assert_eq!(values.len(), samples * out.len(), "as many values as spectra times samples");
+        if samples == 0 {
+            return out.fill([0.0; N]);
+        }
+        let mut blocks = values.chunks_exact(samples * Self::ROWS);
+        let mut outs = out.chunks_exact_mut(Self::ROWS);
+        for (block, out) in blocks.by_ref().zip(outs.by_ref()) {
+            let (ab, cd) = block.split_at(2 * samples);
+            let ((a, b), (c, d)) = (ab.split_at(samples), cd.split_at(samples));
+            let mut sums = [[0.0; N]; 4];
+            for ((((w, a), b), c), d) in self.by_sample.iter().zip(a).zip(b).zip(c).zip(d) {
+                for (sum, v) in sums.iter_mut().zip([a, b, c, d]) {
+                    for (s, w) in sum.iter_mut().zip(w) {
+                        *s += v * w;
+                    }
+                }
+            }
+            out.copy_from_slice(&sums);
+        }
+        for (row, out) in blocks.remainder().chunks_exact(samples).zip(outs.into_remainder()) {
+            *out = [0.0; N];
+            for (w, v) in self.by_sample.iter().zip(row) {
+                for (s, w) in out.iter_mut().zip(w) {
+                    *s += v * w;
+                }
+            }
+        }
+    }
 }
 
 /// A bound on the error of one integral, relative to the integral.
@@ -320,7 +458,7 @@ impl ErrorModel {
         let (low, high) = contract.range_nm.unwrap_or((0.0, UNBOUNDED_NM));
         let (low, high) = (low.max(table_low), high.min(table_high));
         let (first, last) = grid.range_nm();
-        let exact = exact_weights(x, weighting, low.max(first), high.min(last));
+        let exact = Quadrature::exact(x, weighting, low.max(first), high.min(last)).weights(&weighting.values);
         let intervals = x.windows(2).map(|w| weighting.absolute_integral(w[0].max(low), w[1].min(high))).collect();
         let outside =
             weighting.absolute_integral(low, first.min(high)) + weighting.absolute_integral(last.max(low), high);
@@ -408,6 +546,36 @@ mod tests {
         );
         assert!((sum - (37.5 + 2.5)).abs() < 1e-12, "{sum}");
         assert!((trap - 37.5).abs() < 1e-12, "{trap}");
+    }
+
+    #[test]
+    fn a_matrix_is_as_many_dot_products() {
+        let columns: [Vec<f64>; 3] = [0.3, 1.7, 2.9].map(|f: f64| (0..13).map(|i| (f * f64::from(i)).sin()).collect());
+        let matrix = Matrix::new(columns.each_ref().map(Vec::as_slice));
+        // Whole blocks and every remainder, none included.
+        for count in 0..=9 {
+            let values: Vec<f64> = (0..13 * count).map(|i| (0.1 * i as f64).cos()).collect();
+            let mut out = vec![[f64::NAN; 3]; count];
+            matrix.integrals(&values, &mut out);
+            for (row, got) in values.chunks_exact(13).zip(&out) {
+                for (column, got) in columns.iter().zip(got) {
+                    assert!((dot(column, row) - got).abs() < 1e-14, "{count} rows: {got}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn columns_of_one_table_share_their_factors() {
+        // Twice the triangle from the factors of the triangle, on an irregular grid and a clipped range.
+        let grid = Grid::new(vec![490.0, 503.0, 541.5, 560.0, 577.0, 590.0]).expect("ascending");
+        let double: Vec<f64> = triangle().values().iter().map(|v| 2.0 * v).collect();
+        for rule in [Rule::Trapezoid, Rule::Exact] {
+            let contract = Contract { rule: Some(rule), range_nm: Some((495.0, 585.0)) };
+            let factors = Quadrature::new(&grid, Sampling::Density, &triangle(), &contract).expect("fits");
+            let direct = weights(&grid, Sampling::Density, &triangle().scaled(2.0), &contract).expect("fits");
+            assert_eq!(factors.weights(&double), direct);
+        }
     }
 
     #[test]

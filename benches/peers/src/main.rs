@@ -133,6 +133,7 @@ fn photopic_cri() {
 }
 
 fn photopic_tm30() {
+    let (colour, _) = plans();
     let plan = tm30::Plan::new(&grid(), SAMPLING, &Contract::default(), C2).expect("compiles");
     let values = rows(100);
     race(
@@ -141,7 +142,7 @@ fn photopic_tm30() {
         (MEAN_RF, 0.02),
         |out| {
             for (row, out) in values.chunks_exact(SAMPLES).zip(out) {
-                *out = plan.evaluate(row).expect("a white light").rf;
+                *out = plan.evaluate(row, kelvin(&colour, row)).expect("a white light").rf;
             }
         },
     );
