@@ -7,6 +7,9 @@ use super::observer::Observer;
 
 /// Below this distance from the white point in (x, y) there is no hue: the print of CIE chromaticities to four digits.
 const ACHROMATIC: f64 = 1e-5;
+/// Ends of the purple line, nm.
+const PURPLE_NM: (f64, f64) = (380.0, 700.0);
+
 /// The hue and strength of a chromaticity, against a white point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dominant {
@@ -33,6 +36,11 @@ fn locus(observer: Observer) -> &'static [[f64; 3]] {
     })
 }
 
+/// The point of a wavelength, or where the observer's table does not go so far, the point at `otherwise`.
+fn at_or(locus: &[[f64; 3]], wavelength_nm: f64, otherwise: usize) -> Option<[f64; 3]> {
+    locus.iter().find(|p| p[0] == wavelength_nm).or_else(|| locus.get(otherwise)).copied()
+}
+
 /// Dominant wavelength and purity of `xy` against the white point `white_xy`; `None` where the two coincide.
 ///
 /// The ray from white through the colour is cut with the straight pieces between the 1 nm points of the spectral locus. Its
@@ -45,7 +53,8 @@ pub fn dominant(xy: [f64; 2], white_xy: [f64; 2], observer: Observer) -> Option<
     if distance.is_nan() || distance <= ACHROMATIC {
         return None;
     }
-    let (first, last) = (*locus.first()?, *locus.last()?);
+    // The purple line joins the ends of the visible spectrum as CIE 15 draws them; further out the locus turns back.
+    let (first, last) = (at_or(locus, PURPLE_NM.0, 0)?, at_or(locus, PURPLE_NM.1, locus.len().saturating_sub(1))?);
     if let Some((t, wavelength_nm)) = cut_locus(white_xy, direction, locus) {
         return Some(Dominant { wavelength_nm, excitation_purity: 1.0 / t });
     }

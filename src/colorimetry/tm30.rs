@@ -18,7 +18,7 @@ pub const SAMPLES: usize = 99;
 /// Scale of ΔE′ in the fidelity index (TM-30-18; 7.54 in TM-30-15).
 const FIDELITY_SCALE: f64 = 6.73;
 /// Range of the method, nm.
-const RANGE_NM: (f64, f64) = (380.0, 780.0);
+pub const RANGE_NM: (f64, f64) = (380.0, 780.0);
 /// Below the first temperature the reference is a blackbody, above the second daylight, between them a mixture, K.
 const BLEND_K: (f64, f64) = (4000.0, 5000.0);
 
@@ -117,7 +117,8 @@ impl Plan {
         Ok(planck.iter().zip(&daylight).map(|(a, b)| p * a + d * b).collect())
     }
 
-    /// The indices of a spectrum (values on the plan's grid, any scale) of correlated colour temperature `cct_k`.
+    /// The indices of a spectrum (values on the plan's grid, any scale) of correlated colour temperature `cct_k`,
+    /// which the method takes from the spectrum between the ends of [`RANGE_NM`], too.
     ///
     /// # Errors
     /// [`Error::Dark`] without luminous content, [`Error::Illuminant`] above 25 000 K, where daylight is not defined,

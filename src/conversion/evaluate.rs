@@ -303,8 +303,11 @@ fn colour(
             Err(why) => findings.push(Finding::warning("C002", format!("no colour rendering index: {why}"))),
         }
     }
-    if let Some(tm30_plan) = &plan.tm30 {
-        match exact.map_err(|e| e.to_string()).and_then(|k| tm30_plan.evaluate(values, k).map_err(|e| e.to_string())) {
+    if let Some((tm30_plan, observer)) = &plan.tm30 {
+        let kelvin = (chromaticity::uv_1960(observer.xyz(values)).ok_or(cct::Undefined::Black))
+            .and_then(|uv| cct::nearest(uv, settings.c2))
+            .map(|cct| cct.kelvin);
+        match kelvin.map_err(|e| e.to_string()).and_then(|k| tm30_plan.evaluate(values, k).map_err(|e| e.to_string())) {
             Ok(tm30) => {
                 if tm30.rg.is_none() {
                     findings.push(Finding::warning("C004", "no gamut index Rg: a hue bin has no sample"));

@@ -195,7 +195,8 @@ pub(crate) struct Plan {
     /// CIE 1931 observer, in which CCT is defined, where the user chose another for XYZ.
     pub(crate) colour_1931: Option<observer::Plan>,
     pub(crate) cri: Option<cri::Plan>,
-    pub(crate) tm30: Option<tm30::Plan>,
+    /// TM-30 and the CIE 1931 observer over its range, 380–780 nm, from which it takes the colour temperature.
+    pub(crate) tm30: Option<(tm30::Plan, observer::Plan)>,
     pub(crate) alpha_opic: Option<alpha_opic::Plan>,
     pub(crate) photon: Option<photon::Plan>,
     pub(crate) hazard: Option<hazard::Plan>,
@@ -218,7 +219,7 @@ impl Plan {
                 _ => Some(observer_plan(Observer::Cie1931)?),
             },
             cri: groups.cri.then(|| cri::Plan::new(grid, sampling, contract, settings.c2)).transpose()?,
-            tm30: groups.tm30.then(|| tm30::Plan::new(grid, sampling, contract, settings.c2)).transpose()?,
+            tm30: groups.tm30.then(|| Self::tm30(settings, grid, sampling)).transpose()?,
             alpha_opic: groups
                 .alpha_opic
                 .then(|| alpha_opic::Plan::new(settings.efficacy.k_m, grid, sampling, contract))
@@ -229,6 +230,19 @@ impl Plan {
             grid: Arc::clone(grid),
             sampling,
         })
+    }
+}
+
+impl Plan {
+    fn tm30(settings: &Settings, grid: &Grid, sampling: Sampling) -> Result<(tm30::Plan, observer::Plan), Error> {
+        let contract = &settings.contract;
+        let (first, last) = tm30::RANGE_NM;
+        let (low, high) = contract.range_nm.unwrap_or(tm30::RANGE_NM);
+        let narrowed = Contract { rule: contract.rule, range_nm: Some((low.max(first), high.min(last))) };
+        Ok((
+            tm30::Plan::new(grid, sampling, contract, settings.c2)?,
+            observer::Plan::new(Observer::Cie1931, grid, sampling, &narrowed)?,
+        ))
     }
 }
 
