@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 mod convert;
+mod lamp;
 mod notes;
 mod output;
 mod tables;
@@ -39,6 +40,9 @@ struct Talk {
 enum Command {
     /// Spectra into photometric, colour, colour-quality, photon and α-opic figures.
     Convert(Box<convert::ConvertArgs>),
+    /// Goniometric lamp data (IES LM-63, EULUMDAT, TM-33): facts, findings, trade tables, other formats.
+    #[command(subcommand)]
+    Lamp(lamp::LampCommand),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -65,6 +69,9 @@ enum Failure {
     /// Already reported.
     #[error("reported")]
     Reported,
+    /// Ran, and the answer is no.
+    #[error("no")]
+    No,
 }
 
 impl From<io::Error> for Failure {
@@ -87,12 +94,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let done = match cli.command {
         Command::Convert(arguments) => convert::run(*arguments, cli.talk),
+        Command::Lamp(command) => lamp::run(command, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),
     };
     match done {
         Ok(()) | Err(Failure::BrokenPipe) => ExitCode::SUCCESS,
+        Err(Failure::No) => ExitCode::from(1),
         Err(Failure::Reported) => ExitCode::from(2),
         Err(Failure::Message(message)) => {
             let mut stderr = io::stderr().lock();

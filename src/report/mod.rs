@@ -6,4 +6,5 @@
 pub mod conversion;
 pub mod csv;
 pub mod envelope;
+pub mod lamp;
 pub mod text;
