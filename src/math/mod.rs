@@ -1,4 +1,3 @@
-//! Numerical tools without units: interpolation kernels and bracketed minimisation.
+//! Numerical tools without units: interpolation kernels.
 
 pub mod interpolate;
-pub mod minimise;

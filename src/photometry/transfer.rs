@@ -472,6 +472,20 @@ mod tests {
     }
 
     #[test]
+    fn the_named_relations_are_those_of_the_lecture() {
+        // physics.md, S1 and S4: E = I cosθ/r², its inverse, L = ρE/π, M = πL, Φ = πAL, Φ = IΩ, E = LΩ⊥.
+        let e = illuminance_of_point(Candela(100.0), Metre(2.0), Radian(PI / 3.0));
+        assert!((e.0 - 12.5).abs() < 1e-13, "100 cd · cos 60° / 4 m²: {e}");
+        assert_eq!(intensity_of_point(Lux(25.0), Metre(2.0)), Candela(100.0));
+        let l = lambertian_luminance(Lux(PI), 0.5);
+        assert!((l.0 - 0.5).abs() < 1e-15);
+        assert!((lambertian_exitance(l).0 - 0.5 * PI).abs() < 1e-15, "M = ρE");
+        assert!((lambertian_flux(l, SquareMetre(2.0)).0 - PI).abs() < 1e-15);
+        assert!((uniform_flux(Candela(1.0), Steradian(4.0 * PI)).0 - 4.0 * PI).abs() < 1e-14);
+        assert!((illuminance_of_uniform(l, Steradian(PI)).0 - 0.5 * PI).abs() < 1e-15, "a uniform hemisphere: E = πL");
+    }
+
+    #[test]
     fn nothing_follows_from_no_geometry() {
         for q in Quantity::ABSOLUTE {
             assert_eq!(derive(q, &Geometry::default()), Ok(Vec::new()));
