@@ -1,3 +1,4 @@
-//! Numerical tools without units: interpolation kernels.
+//! Numerical tools without units: interpolation kernels, contour lines.
 
+pub mod contour;
 pub mod interpolate;

@@ -1,17 +1,17 @@
-//! Luminaires as JSON and text.
+//! `lamp info`: the facts and figures of one luminaire.
 
 use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use crate::luminaire::format::File;
-use crate::luminaire::{Body, Kind, Symmetry, System, beam, bug, cu, lcs, luminance, nema, spacing, ugr, zonal};
+use crate::luminaire::format::{File, Format};
+use crate::luminaire::{Body, Kind, Symmetry, System, beam, bug, lcs, luminance, nema, spacing, zonal};
 use crate::units::significant;
 
 /// C-plane of the street side: C0 in LM-63, C90 in EULUMDAT and TM-33.
 fn street_side(file: &File) -> f64 {
     match file.format {
-        crate::luminaire::format::Format::Ies => lcs::STREET_C_DEG_IES,
+        Format::Ies => lcs::STREET_C_DEG_IES,
         _ => lcs::STREET_C_DEG_EULUMDAT,
     }
 }
@@ -134,30 +134,6 @@ fn symmetry(symmetry: Symmetry) -> &'static str {
     }
 }
 
-/// The rows of `lamp ugr`; `null` where nothing of the luminaire is seen from the observer's place.
-///
-/// # Errors
-/// [`crate::luminaire::Unavailable`] where the table is not defined for the luminaire.
-pub fn ugr(file: &File) -> Result<Map<String, Value>, crate::luminaire::Unavailable> {
-    let rows: Vec<Value> = ugr::ugr_table(&file.luminaire)?
-        .iter()
-        .map(
-            |r| json!({"room_x_h": r.room_x_h, "room_y_h": r.room_y_h, "crosswise": r.crosswise, "endwise": r.endwise}),
-        )
-        .collect();
-    Ok(Map::from_iter([("rows".to_owned(), rows.into()), ("spacing_to_height".to_owned(), json!(0.25))]))
-}
-
-/// The rows of `lamp cu`.
-///
-/// # Errors
-/// [`crate::luminaire::Unavailable`] where the table is not defined for the luminaire.
-pub fn cu(file: &File) -> Result<Map<String, Value>, crate::luminaire::Unavailable> {
-    let rows: Vec<Value> =
-        cu::cu_table(&file.luminaire)?.iter().map(|r| json!({"rcr": r.rcr, "cu_percent": r.cu_percent})).collect();
-    Ok(Map::from_iter([("rows".to_owned(), rows.into()), ("floor_reflectance".to_owned(), json!(0.2))]))
-}
-
 /// `lamp info` for people, from the JSON object.
 #[must_use]
 pub fn info_text(path: &str, o: &Map<String, Value>) -> String {
@@ -256,31 +232,4 @@ fn number(o: &Map<String, Value>, key: &str, digits: usize) -> String {
 
 fn angle(value: &Value) -> String {
     value.as_f64().map_or_else(|| "–".to_owned(), |v| format!("{v:.1}"))
-}
-
-/// A table of `lamp ugr` or `lamp cu` for people, from the JSON object.
-#[must_use]
-pub fn rows_text(path: &str, o: &Map<String, Value>) -> String {
-    let mut out = format!("{path}\n\n");
-    for row in o["rows"].as_array().into_iter().flatten() {
-        let cells = |key: &str, digits: usize| -> String {
-            let list = row[key].as_array().into_iter().flatten();
-            list.map(|v| v.as_f64().map_or_else(|| "    –".into(), |v| format!("{v:5.digits$}")))
-                .collect::<Vec<_>>()
-                .join(" ")
-        };
-        let _ = if row.get("rcr").is_some() {
-            writeln!(out, "  RCR {:>2}  {}", row["rcr"], cells("cu_percent", 0))
-        } else {
-            writeln!(
-                out,
-                "  {:>3}H × {:>3}H  {}  |  {}",
-                row["room_x_h"],
-                row["room_y_h"],
-                cells("crosswise", 1),
-                cells("endwise", 1)
-            )
-        };
-    }
-    out
 }
