@@ -11,7 +11,7 @@ pub use error::{Error, ErrorKind};
 
 use std::fmt;
 
-use crate::finding::{Checked, Location};
+use crate::finding::Checked;
 use crate::luminaire::Luminaire;
 
 /// The formats that are read and written.
@@ -92,7 +92,7 @@ pub fn detect(bytes: &[u8]) -> Option<Format> {
 /// [`Error`] with its place, what was found and what was expected.
 pub fn open(bytes: &[u8], options: &ReadOptions) -> Result<Checked<File>, Error> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(Error::new(Location::at(1, 1), ErrorKind::Empty));
+        return Err(Error::whole(ErrorKind::Empty));
     }
     text::decode(bytes)?;
     // A file without any mark of a format is most likely an LM-63 file that has lost its TILT line, which its reader explains.

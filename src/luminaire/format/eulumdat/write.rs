@@ -23,7 +23,7 @@ const MOST_OUTPUT: f64 = 1.005;
 /// [`ErrorKind::Unexpected`] for Types A and B and for radiant or photon intensity, which the format does not have.
 pub fn write(luminaire: &Luminaire) -> Result<Checked<String>, Error> {
     let table = &luminaire.distribution;
-    let refused = |found: &str, expected: &str, hint: &str| {
+    let refused = |found: &str, expected: &str, hint: &'static str| {
         let kind = ErrorKind::Unexpected { found: found.to_owned(), expected: expected.to_owned() };
         Err(Error::new(Location::default(), kind).with_hint(hint))
     };

@@ -20,15 +20,7 @@ pub fn parse(bytes: &[u8]) -> Result<Checked<Tm33>, Error> {
     let content = text.text.trim_start();
     let skipped = &text.text[..text.text.len() - content.len()];
     let lines_before = text::place(skipped, skipped.len()).line.map_or(0, |line| line - 1);
-    read(content, text.finding.clone()).map_err(|error| {
-        let mut location = error.location().clone();
-        location.line = location.line.map(|line| line + lines_before);
-        let moved = Error::new(location, error.kind().clone());
-        match error.hint() {
-            Some(hint) => moved.with_hint(hint),
-            None => moved,
-        }
-    })
+    read(content, text.finding.clone()).map_err(|error| error.below(lines_before))
 }
 
 fn read(content: &str, encoding: Option<Finding>) -> Result<Checked<Tm33>, Error> {
