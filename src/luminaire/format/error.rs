@@ -9,9 +9,6 @@ pub enum ErrorKind {
     /// Nothing in it.
     #[error("found an empty input; expected a luminaire file")]
     Empty,
-    /// Not one of the formats.
-    #[error("found no LM-63, EULUMDAT, TM-33 or CIE 102 file; expected one")]
-    UnknownFormat,
     /// A binary file or text that cannot be decoded.
     #[error("found {found}; expected a text file")]
     NotText {
