@@ -12,7 +12,7 @@
 //! | L116 | info, warning | the downward fraction is not the declared one (1 %, 5 %) |
 
 use crate::finding::{Finding, Severity};
-use crate::luminaire::{Kind, Luminaire, System};
+use crate::luminaire::{Kind, Luminaire, System, zonal};
 
 /// Findings about a luminaire of any format.
 #[must_use]
@@ -43,8 +43,7 @@ pub fn check(luminaire: &Luminaire) -> Vec<Finding> {
         };
         findings.extend(graded("L112", flux / declared - 1.0, message));
     }
-    let lamps: Option<f64> = luminaire.lamps.iter().map(|l| l.flux_lm).sum();
-    if let Some(lamps) = lamps.filter(|l| *l > 0.0 && !luminaire.absolute && luminaire.kind == Kind::Luminous) {
+    if let Some(lamps) = zonal::lamp_flux_lm(luminaire).filter(|_| luminaire.kind == Kind::Luminous) {
         let ratio = flux / lamps;
         if ratio > 1.005 {
             let message = format!(

@@ -113,7 +113,7 @@ pub fn info(file: &File) -> Map<String, Value> {
 }
 
 fn body(b: &Body) -> Value {
-    json!({"shape": format!("{:?}", b.shape).to_lowercase(), "length_m": b.length_m, "width_m": b.width_m, "height_m": b.height_m})
+    json!({"shape": b.shape.name(), "length_m": b.length_m, "width_m": b.width_m, "height_m": b.height_m})
 }
 
 fn system(system: System) -> &'static str {

@@ -144,7 +144,7 @@ impl Writer {
             let mm = |m: f64| (m * 1e6).round() / 1e3;
             let [length, width, height] = [mm(body.length_m), mm(body.width_m), mm(body.height_m)];
             let mut lost = |as_what: &str| {
-                let message = format!("{name}: the shape {:?} was written as {as_what}", body.shape);
+                let message = format!("{name}: the shape {} was written as {as_what}", body.shape.name());
                 self.findings.push(Finding::info("L290", message));
             };
             match body.shape {
