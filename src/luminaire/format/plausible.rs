@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | L101 | info | the text is not UTF-8 and was read as Windows-1252 |
 //! | L110 | warning, error | negative intensities were kept; error where the flux itself is negative |
-//! | L111 | error | all intensities are zero |
+//! | L111 | error | all intensities are zero, or the table spans no solid angle: there is no flux |
 //! | L112 | info, warning | the integrated flux is not the declared one (1 %, 5 %) |
 //! | L113 | warning | more flux leaves the luminaire than its lamps give |
 //! | L114 | info, warning | planes disagree at the pole, where they meet in one direction (1 %, 5 % of the peak) |
@@ -27,6 +27,12 @@ pub fn check(luminaire: &Luminaire) -> Vec<Finding> {
         return findings;
     }
     let flux = distribution.total_flux();
+    if flux == 0.0 && low == 0.0 {
+        let message =
+            "the table spans no solid angle, so that its intensities make no flux: there is nothing to calculate with";
+        findings.push(Finding::error("L111", message).hint("a table needs two angles or more between the poles"));
+        return findings;
+    }
     if low < 0.0 {
         let count = values.iter().filter(|v| **v < 0.0).count();
         let severity = if flux <= 0.0 { Severity::Error } else { Severity::Warning };
