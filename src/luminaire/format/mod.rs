@@ -78,9 +78,12 @@ fn told_by(text: &Text<'_>) -> Option<Format> {
     if text.lines().any(ies) {
         return Some(Format::Ies);
     }
-    // The first line is the maker, and may be empty.
-    let mut numbers = text.lines().skip(1).map(|line| line.text.trim().replace(',', ".").parse::<f64>().ok());
-    let (kind, symmetry) = (numbers.next().flatten(), numbers.next().flatten());
+    let number = |line: &Line<'_>| line.text.trim().replace(',', ".").parse::<f64>().ok();
+    let first: Vec<Line<'_>> = text.lines().take(5).collect();
+    // The first line is the maker, and may be empty. A transfer may have doubled the line ends.
+    let doubled = [1, 3].iter().all(|&i| first.get(i).is_some_and(|line: &Line<'_>| line.text.trim().is_empty()));
+    let step = if doubled { 2 } else { 1 };
+    let [kind, symmetry] = [1, 2].map(|i| first.get(i * step).and_then(number));
     let whole = |v: Option<f64>, most: f64| v.is_some_and(|v| (0.0..=most).contains(&v) && v.fract() == 0.0);
     // A symmetry out of range is EULUMDAT's own error to tell.
     (whole(kind, 9.0) && whole(symmetry, 99.0)).then_some(Format::Eulumdat)
