@@ -1,5 +1,7 @@
 //! What all targets hold a reader to: no panic, and what it reads is a spectrum that stands every further step.
 
+use photopic::luminaire::format as lamps;
+use photopic::report::lamp as figures;
 use photopic::spectrum::format::{Format, ReadOptions, read};
 
 /// Reads as one format and resolves whatever comes out.
@@ -22,5 +24,23 @@ fn with(bytes: &[u8], options: &ReadOptions) {
             }
         }
         Err(error) => assert!(error.location().line.is_some() && error.to_string().contains("; expected "), "{error}"),
+    }
+}
+
+/// Reads a lamp as one format, or as the content tells, as it stands and repaired: whatever comes out has finite intensities, says
+/// so where it does not shine, and all its figures can be made.
+pub fn lamp(bytes: &[u8], format: Option<lamps::Format>) {
+    for repair in [false, true] {
+        match lamps::open(bytes, &lamps::ReadOptions { format, repair }) {
+            Ok(file) => {
+                let table = &file.value.luminaire.distribution;
+                assert!(table.values().iter().all(|v| v.is_finite()));
+                let dark = table.total_flux() <= 0.0;
+                assert!(!dark || file.findings.iter().any(|f| matches!(f.code, "L110" | "L111")), "silently dark");
+                let object = figures::info(&file.value);
+                let _ = (figures::info_text("-", &object), figures::ugr(&file.value), figures::cu(&file.value));
+            }
+            Err(error) => assert!(error.to_string().contains("expected"), "{error}"),
+        }
     }
 }

@@ -11,6 +11,7 @@ mod lamp;
 mod notes;
 mod output;
 mod tables;
+mod writer;
 
 /// Light as physics measures it, as people see it, and back.
 ///

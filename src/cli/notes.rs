@@ -9,6 +9,8 @@ use crate::finding::{Finding, Severity};
 
 /// From this many bytes of input a progress bar is worth its place.
 const LONG_BYTES: u64 = 8 << 20;
+/// From this many files.
+const LONG_FILES: usize = 200;
 /// Findings of one code printed per input before the rest is counted.
 const PRINTED_PER_CODE: usize = 3;
 
@@ -17,13 +19,20 @@ pub(super) struct Notes {
     talk: Talk,
     /// Something could not be done.
     pub failed: bool,
-    /// Bytes read so far; hidden for short runs and where nobody watches.
+    /// Bytes or files read so far; hidden for short runs and where nobody watches.
     pub progress: ProgressBar,
 }
 
 impl Notes {
     pub(super) fn new(paths: &[String], talk: Talk) -> Self {
         Self { talk, failed: false, progress: progress(paths, talk) }
+    }
+
+    /// The same for inputs that are read whole, counted by file.
+    pub(super) fn counting(files: usize, talk: Talk) -> Self {
+        let worth_it = files >= LONG_FILES;
+        let template = "{bar:40} {pos}/{len} files, {eta} left";
+        Self { talk, failed: false, progress: bar(files as u64, template, worth_it, talk) }
     }
 
     /// Prints a line above the progress bar.
@@ -66,10 +75,14 @@ impl Notes {
 fn progress(paths: &[String], talk: Talk) -> ProgressBar {
     let size = |path: &String| std::fs::metadata(path).map_or(0, |m| if m.is_file() { m.len() } else { 0 });
     let total: u64 = paths.iter().map(size).sum();
-    if total < LONG_BYTES || talk.quiet || !io::stderr().is_terminal() {
+    bar(total, "{bar:40} {bytes}/{total_bytes} {bytes_per_sec}, {eta} left", total >= LONG_BYTES, talk)
+}
+
+/// A bar, hidden for short runs and where nobody watches.
+fn bar(total: u64, template: &str, worth_it: bool, talk: Talk) -> ProgressBar {
+    if !worth_it || talk.quiet || !io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{bar:40} {bytes}/{total_bytes} {bytes_per_sec}, {eta} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
 }

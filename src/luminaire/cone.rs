@@ -1,7 +1,7 @@
 //! Light cone: illuminance on the axis and the size of the lit patch at distances, and the equivalent cone of the beam.
 
 use super::beam::{BEAM_FRACTION, Definition, angles};
-use super::distribution::{Distribution, System};
+use super::distribution::{Distribution, Symmetry, System, locate};
 
 /// What the beam makes on a plane across the axis at one distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,50 +43,65 @@ pub struct EquivalentCone {
 }
 
 /// Cells per degree of the sum over directions.
-const CELLS_PER_DEG: u32 = 2;
+const CELLS_PER_DEG: f64 = 2.0;
 
 /// The equivalent cone of the half-peak beam; `None` for a dark table.
 ///
-/// The directions are summed in cells of ½° × ½° of the table's own angles with their exact solid angles; a beam of 10° is met
-/// within 0.05°.
+/// The tabulated directions are summed in cells of ½° × ½° of the table's own angles with their exact solid angles, and counted
+/// as often as the symmetry repeats them; a beam of 10° is met within 0.05°.
 #[must_use]
 pub fn equivalent_cone(distribution: &Distribution) -> Option<EquivalentCone> {
     let (peak, ..) = distribution.peak();
     if peak <= 0.0 {
         return None;
     }
-    let (h0, h1, v0, v1) = match distribution.system() {
-        System::TypeC => (0, 360, 0, 180),
-        System::TypeA | System::TypeB => (-90, 90, -90, 90),
+    let system = distribution.system();
+    let horizontal = distribution.horizontal_deg();
+    let (across, step_h) = match distribution.symmetry() {
+        Symmetry::Rotational => (vec![(0, 0.0, horizontal[0])], 360.0),
+        _ => cells(horizontal),
     };
-    let step = 1.0 / f64::from(CELLS_PER_DEG);
-    let cells = |from: i32, to: i32| {
-        (0..(to - from).unsigned_abs() * CELLS_PER_DEG).map(move |i| f64::from(from) + step * (f64::from(i) + 0.5))
-    };
+    let (along, step_v) = cells(distribution.vertical_deg());
     // Solid angle of a cell: its width about the axis times the exact integral of the latitude's measure.
-    let half = 0.5 * step.to_radians();
-    let measure = |h: f64, v: f64| {
-        2.0 * half
-            * 2.0
-            * half.sin()
-            * match distribution.system() {
-                System::TypeC => v.to_radians().sin(),
-                System::TypeA => v.to_radians().cos(),
-                System::TypeB => h.to_radians().cos(),
-            }
-    };
+    let (about, latitude) = if system == System::TypeB { (step_v, step_h) } else { (step_h, step_v) };
+    let cell_sr = distribution.copies() * about.to_radians() * 2.0 * (0.5 * latitude.to_radians()).sin();
+    let planes = horizontal.len();
+    let mut row = vec![0.0; planes];
     let (mut solid_angle_sr, mut flux) = (0.0, 0.0);
-    for h in cells(h0, h1) {
-        for v in cells(v0, v1) {
-            let value = distribution.at(h, v);
+    for &(i, t, v) in &along {
+        for (plane, value) in row.iter_mut().enumerate() {
+            let values = distribution.plane(plane);
+            *value = values[i] + t * (values[(i + 1).min(values.len() - 1)] - values[i]);
+        }
+        for &(j, s, h) in &across {
+            let value = row[j] + s * (row[(j + 1).min(planes - 1)] - row[j]);
             if value >= BEAM_FRACTION * peak {
-                solid_angle_sr += measure(h, v);
-                flux += value * measure(h, v);
+                let measure = match system {
+                    System::TypeC => v.to_radians().sin(),
+                    System::TypeA => v.to_radians().cos(),
+                    System::TypeB => h.to_radians().cos(),
+                };
+                solid_angle_sr += cell_sr * measure;
+                flux += cell_sr * measure * value;
             }
         }
     }
     let angle_deg = 2.0 * (1.0 - solid_angle_sr / std::f64::consts::TAU).clamp(-1.0, 1.0).acos().to_degrees();
     Some(EquivalentCone { angle_deg, solid_angle_sr, flux })
+}
+
+/// Cells of about ½° between the first and the last angle: where the middle of each lies among the angles (index, fraction), and
+/// its angle; and the width of a cell, degrees.
+fn cells(angles: &[f64]) -> (Vec<(usize, f64, f64)>, f64) {
+    let (first, span) = (angles[0], angles[angles.len() - 1] - angles[0]);
+    let count = (span * CELLS_PER_DEG).ceil();
+    let step = if count > 0.0 { span / count } else { 0.0 };
+    let middle = |i: u32| {
+        let angle = first + step * (f64::from(i) + 0.5);
+        let (index, fraction) = locate(angles, angle);
+        (index, fraction, angle)
+    };
+    ((0..count as u32).map(middle).collect(), step)
 }
 
 #[cfg(test)]

@@ -260,7 +260,7 @@ fn ascending(which: &'static str, angles: &[f64]) -> Result<(), Error> {
 }
 
 /// Index and fraction of an angle in an ascending list; clamped to its ends.
-fn locate(angles: &[f64], at: f64) -> (usize, f64) {
+pub(super) fn locate(angles: &[f64], at: f64) -> (usize, f64) {
     if angles.len() == 1 || at <= angles[0] {
         return (0, 0.0);
     }

@@ -45,7 +45,7 @@ fn even_weights(angles_deg: &[f64]) -> Vec<f64> {
 
 impl Distribution {
     /// How often the tabulated planes stand for the whole.
-    fn copies(&self) -> f64 {
+    pub(super) fn copies(&self) -> f64 {
         match (self.system(), self.symmetry()) {
             (System::TypeC, Symmetry::Quadrant) => 4.0,
             (System::TypeC, Symmetry::BilateralC0 | Symmetry::BilateralC90) | (_, Symmetry::Quadrant) => 2.0,

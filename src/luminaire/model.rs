@@ -25,8 +25,25 @@ pub enum Shape {
     Round,
     /// Sphere or ellipsoid.
     Sphere,
-    /// Cylinder lying along its length.
-    HorizontalCylinder,
+    /// Cylinder whose axis lies along C0–C180 (x); across it, it is a circle or ellipse.
+    CylinderAlongC0,
+    /// Cylinder whose axis lies along C90–C270 (y).
+    CylinderAlongC90,
+}
+
+impl Shape {
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Rectangle => "rectangle",
+            Self::Round => "round",
+            Self::Sphere => "sphere",
+            Self::CylinderAlongC0 => "cylinder_along_c0",
+            Self::CylinderAlongC90 => "cylinder_along_c90",
+        }
+    }
 }
 
 /// A body: the luminous opening, or the housing; metres. The axes are the luminaire's, whatever a format calls them: EULUMDAT's
@@ -75,7 +92,7 @@ pub struct Luminaire {
     pub distribution: Distribution,
     /// Absolute photometry: the intensities are the luminaire's own and not per 1000 lm of its lamps.
     pub absolute: bool,
-    /// Lamps.
+    /// Sets of lamps: the one that belongs to the intensities first, then those that may take its place.
     pub lamps: Vec<LampSet>,
     /// Electrical input power, W.
     pub input_power_w: Option<f64>,

@@ -71,11 +71,12 @@ pub fn downward_flux_fraction(distribution: &Distribution) -> Result<f64, Unavai
     if total > 0.0 { Ok(mean.flux_between(0.0, 90.0) / total) } else { Err(Unavailable::Dark) }
 }
 
-/// Rated flux of all lamps, lm: the sum over the lamp sets; `None` for absolute photometry or where no set has a flux.
+/// Rated flux of the lamps, lm: of the first set, by which the intensities are scaled and to which any other is an alternative;
+/// `None` for absolute photometry or where the set has no flux.
 #[must_use]
 pub fn lamp_flux_lm(luminaire: &Luminaire) -> Option<f64> {
-    let sum: f64 = luminaire.lamps.iter().filter_map(|set| set.flux_lm).sum();
-    (!luminaire.absolute && sum > 0.0).then_some(sum)
+    let flux = luminaire.lamps.first().and_then(|set| set.flux_lm);
+    flux.filter(|flux| *flux > 0.0 && !luminaire.absolute)
 }
 
 /// Light output ratio: luminaire flux over the rated flux of its lamps, 0 to 1; `None` for absolute photometry.

@@ -77,7 +77,7 @@ impl Table {
 }
 
 /// The value at a dotted path, as a cell.
-fn cell(result: &Map<String, Value>, path: &str) -> String {
+pub(super) fn cell(result: &Map<String, Value>, path: &str) -> String {
     match at(result, path) {
         Some(Value::String(s)) => s.clone(),
         Some(v @ (Value::Number(_) | Value::Bool(_))) => v.to_string(),

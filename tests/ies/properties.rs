@@ -12,7 +12,8 @@ fn any_luminaire() -> impl Strategy<Value = Luminaire> {
         Just(Shape::Rectangle),
         Just(Shape::Round),
         Just(Shape::Sphere),
-        Just(Shape::HorizontalCylinder)
+        Just(Shape::CylinderAlongC0),
+        Just(Shape::CylinderAlongC90)
     ];
     let symmetry = prop_oneof![
         Just((System::TypeC, Symmetry::Rotational, 0.0, 0.0)),

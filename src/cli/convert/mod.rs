@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use self::input::{Checksum, Counted, Item, Loaded, Refused, Said};
-use self::writer::Writer;
 use super::notes::Notes;
 use super::output::{self, Sink};
+use super::writer::{Writer, csv_row};
 use super::{Failure, Talk};
 use crate::conversion::{Conversion, Converter};
 use crate::finding::{Checked, Finding, Location};
@@ -24,7 +24,6 @@ mod input;
 mod measures;
 mod picture;
 mod stream;
-mod writer;
 
 pub(super) use args::ConvertArgs;
 
@@ -258,11 +257,4 @@ fn render(job: &Job<'_>, path: &str, heading: &str, c: &Conversion, printed: &[P
         }
         Form::Csv => csv_row(&job.table.row(&object)),
     }
-}
-
-fn csv_row(cells: &[String]) -> Vec<u8> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    // A vector takes every byte.
-    let _ = writer.write_record(cells);
-    writer.into_inner().unwrap_or_default()
 }

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::input::{Counted, Refused};
-use super::writer::Writer;
 use super::{Done, Job, convert, in_file, render, same_name, wanted};
 use crate::cli::Failure;
 use crate::cli::notes::Notes;
+use crate::cli::writer::Writer;
 use crate::finding::{Checked, Finding, Location};
 use crate::spectrum::Grid;
 use crate::spectrum::format::{Row, RowStream, Scale};

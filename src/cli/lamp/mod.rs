@@ -1,26 +1,32 @@
-//! `lamp`: goniometric lamp data checked, analysed and converted; one file per verb.
+//! `lamp`: goniometric lamp data checked, analysed and converted.
 
-mod check;
 mod convert;
 mod files;
 mod load;
 
 use clap::Subcommand;
+use serde_json::Map;
 
-use self::files::{FilesArgs, files};
+use self::files::{FilesArgs, Verb, files};
 use super::{Failure, Talk};
 use crate::report::lamp as report;
 
 /// Verbs of `lamp`.
 #[derive(Debug, Subcommand)]
 pub(super) enum LampCommand {
-    /// Facts and figures: flux, peak, beam, zones, luminance.
+    /// Facts and figures: flux, peak, beam and field angles, zones, luminance, cone, ratings.
+    ///
+    /// Each figure names its definition; in JSON they stand under `settings.definitions`.
     Info(FilesArgs),
     /// Findings; exit code 1 where there are errors among them.
+    ///
+    /// Says of each file whether it passes, and every finding with its code, place and hint (docs/findings.md lists the codes).
     Check(FilesArgs),
-    /// The corrected UGR table (CIE 190): 19 rooms, crosswise and endwise.
+    /// The corrected UGR table (CIE 190, CIE 117): 19 rooms, five sets of reflectances, crosswise and endwise.
+    ///
+    /// For the luminaire's own flux and a spacing of a quarter of the height above the eyes (S/H 0.25).
     Ugr(FilesArgs),
-    /// Zonal-cavity coefficients of utilisation, per cent.
+    /// Zonal-cavity coefficients of utilisation, per cent: room cavity ratios 0 to 10, floor cavity 20 %.
     Cu(FilesArgs),
     /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
     Convert(convert::ConvertArgs),
@@ -28,14 +34,50 @@ pub(super) enum LampCommand {
 
 pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
     match command {
-        LampCommand::Info(a) => files(&a, talk, "lamp info", &|f| Ok(report::info(f)), &report::info_text),
+        LampCommand::Info(a) => {
+            let verb = Verb {
+                command: "lamp info",
+                settings: Map::from_iter([("definitions".to_owned(), report::definitions())]),
+                figures: |file| Ok(report::info(&file.value)),
+                text: |path, object, _| report::info_text(path, object),
+                table: report::Table::info(),
+                judges: false,
+            };
+            files(&a, talk, &verb)
+        }
+        LampCommand::Check(a) => {
+            let verb = Verb {
+                command: "lamp check",
+                settings: Map::new(),
+                figures: |file| Ok(report::check(file)),
+                text: report::check_text,
+                table: report::Table::check(),
+                judges: true,
+            };
+            files(&a, talk, &verb)
+        }
         LampCommand::Ugr(a) => {
-            files(&a, talk, "lamp ugr", &|f| report::ugr(f).map_err(|e| e.to_string()), &report::rows_text)
+            let verb = Verb {
+                command: "lamp ugr",
+                settings: Map::new(),
+                figures: |file| report::ugr(&file.value).map_err(|e| e.to_string()),
+                text: |path, object, _| report::ugr_text(path, object),
+                table: report::Table::ugr(),
+                judges: false,
+            };
+            files(&a, talk, &verb)
         }
         LampCommand::Cu(a) => {
-            files(&a, talk, "lamp cu", &|f| report::cu(f).map_err(|e| e.to_string()), &report::rows_text)
+            let verb = Verb {
+                command: "lamp cu",
+                settings: Map::new(),
+                figures: |file| report::cu(&file.value).map_err(|e| e.to_string()),
+                text: |path, object, _| report::cu_text(path, object),
+                table: report::Table::cu(),
+                judges: false,
+            };
+            files(&a, talk, &verb)
         }
-        LampCommand::Check(a) => check::check(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
     }
 }

@@ -1,8 +1,6 @@
 //! Why a luminaire file was refused: where, what was found, what was expected.
 
-use std::fmt;
-
-use crate::finding::Location;
+use crate::finding::Located;
 
 /// What is wrong.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -11,9 +9,6 @@ pub enum ErrorKind {
     /// Nothing in it.
     #[error("found an empty input; expected a luminaire file")]
     Empty,
-    /// Not one of the formats.
-    #[error("found no LM-63, EULUMDAT, TM-33 or CIE 102 file; expected one")]
-    UnknownFormat,
     /// A binary file or text that cannot be decoded.
     #[error("found {found}; expected a text file")]
     NotText {
@@ -93,67 +88,5 @@ pub enum ErrorKind {
     Table(#[from] crate::luminaire::Error),
 }
 
-/// An error with its place and, where there is one, advice.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Error(Box<Report>);
-
-#[derive(Debug, Clone, PartialEq)]
-struct Report {
-    location: Location,
-    kind: ErrorKind,
-    hint: Option<String>,
-}
-
-impl Error {
-    /// An error at a place.
-    pub(crate) fn new(location: Location, kind: impl Into<ErrorKind>) -> Self {
-        Self(Box::new(Report { location, kind: kind.into(), hint: None }))
-    }
-
-    /// The same error with advice.
-    pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {
-        self.0.hint = Some(hint.into());
-        self
-    }
-
-    /// What is wrong.
-    #[must_use]
-    pub fn kind(&self) -> &ErrorKind {
-        &self.0.kind
-    }
-
-    /// Where.
-    #[must_use]
-    pub fn location(&self) -> &Location {
-        &self.0.location
-    }
-
-    /// What the user can do.
-    #[must_use]
-    pub fn hint(&self) -> Option<&str> {
-        self.0.hint.as_deref()
-    }
-
-    /// The same error, in the file named.
-    #[must_use]
-    pub fn in_file(mut self, path: &str) -> Self {
-        self.0.location.path = Some(path.to_owned());
-        self
-    }
-}
-
-impl std::error::Error for Error {}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let place = self.0.location.to_string();
-        if !place.is_empty() {
-            write!(f, "{place}: ")?;
-        }
-        write!(f, "{}", self.0.kind)?;
-        match &self.0.hint {
-            Some(hint) => write!(f, "; {hint}"),
-            None => Ok(()),
-        }
-    }
-}
+/// An [`ErrorKind`] with its place and a hint.
+pub type Error = Located<ErrorKind>;

@@ -11,7 +11,8 @@ pub use error::{Error, ErrorKind};
 
 use std::fmt;
 
-use crate::finding::{Checked, Location};
+use self::text::{Line, Text};
+use crate::finding::Checked;
 use crate::luminaire::Luminaire;
 
 /// The formats that are read and written.
@@ -62,58 +63,84 @@ pub struct File {
 /// EULUMDAT's (maker, a type of 0 to 3, a symmetry of 0 to 4) is EULUMDAT's.
 #[must_use]
 pub fn detect(bytes: &[u8]) -> Option<Format> {
-    let text = text::decode(bytes).ok()?.text;
-    let start = text.trim_start();
-    if start.starts_with('<') {
+    told_by(&text::decode(bytes).ok()?)
+}
+
+fn told_by(text: &Text<'_>) -> Option<Format> {
+    if text.text.trim_start().starts_with('<') {
         return Some(Format::Tm33);
     }
-    // Old files end their lines with CR alone.
-    let plain = text.replace("\r\n", "\n").replace('\r', "\n");
-    let mut lines = plain.lines().map(str::trim);
-    let ies = |line: &str| {
-        let upper: String = line.chars().filter(|c| !c.is_whitespace()).take(12).collect::<String>().to_uppercase();
+    let ies = |line: Line<'_>| {
+        let bare = line.text.chars().filter(|c| !c.is_whitespace()).take(12);
+        let upper: String = bare.map(|c| c.to_ascii_uppercase()).collect();
         upper.starts_with("TILT=") || upper.starts_with("IESNA") || upper.starts_with("IES:LM-63")
     };
-    if lines.clone().any(ies) {
+    if text.lines().any(ies) {
         return Some(Format::Ies);
     }
-    let number = |line: Option<&str>| line.and_then(|l| l.replace(',', ".").parse::<f64>().ok());
-    // The first line is the maker, and may be empty.
-    lines.next()?;
-    let (kind, symmetry) = (number(lines.next()), number(lines.next()));
+    let number = |line: &Line<'_>| line.text.trim().replace(',', ".").parse::<f64>().ok();
+    let first: Vec<Line<'_>> = text.lines().take(5).collect();
+    // The first line is the maker, and may be empty. A transfer may have doubled the line ends.
+    let doubled = [1, 3].iter().all(|&i| first.get(i).is_some_and(|line: &Line<'_>| line.text.trim().is_empty()));
+    let step = if doubled { 2 } else { 1 };
+    let [kind, symmetry] = [1, 2].map(|i| first.get(i * step).and_then(number));
     let whole = |v: Option<f64>, most: f64| v.is_some_and(|v| (0.0..=most).contains(&v) && v.fract() == 0.0);
     // A symmetry out of range is EULUMDAT's own error to tell.
     (whole(kind, 9.0) && whole(symmetry, 99.0)).then_some(Format::Eulumdat)
 }
 
+/// Refuses by its name a format that is told by its first line and not read.
+fn unsupported(text: &Text<'_>) -> Result<(), Error> {
+    let first = text.lines().find(|line| !line.text.trim().is_empty());
+    match first {
+        Some(line) if line.text.trim_start().get(..4).is_some_and(|word| word.eq_ignore_ascii_case("CIEF")) => {
+            let kind = ErrorKind::Unexpected {
+                found: "a CIE 102 file (`CIEF`), which is not supported".to_owned(),
+                expected: "an LM-63, EULUMDAT or TM-33 file".to_owned(),
+            };
+            Err(Error::at(line.number, 1, kind)
+                .with_hint("makers who give CIE 102 files give the same lamp as .ies or .ldt too"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Reads a file of any format, with what it was.
+///
+/// CIE 102 (`CIEF=`), of which no definition is public, is refused by its name.
 ///
 /// # Errors
 /// [`Error`] with its place, what was found and what was expected.
 pub fn open(bytes: &[u8], options: &ReadOptions) -> Result<Checked<File>, Error> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(Error::new(Location::at(1, 1), ErrorKind::Empty));
+        return Err(Error::whole(ErrorKind::Empty));
     }
-    text::decode(bytes)?;
+    let text = text::decode(bytes)?;
+    let repair = options.repair;
     // A file without any mark of a format is most likely an LM-63 file that has lost its TILT line, which its reader explains.
-    match options.format.or_else(|| detect(bytes)).unwrap_or(Format::Ies) {
+    let format = match options.format.or_else(|| told_by(&text)) {
+        Some(format) => format,
+        None => {
+            unsupported(&text)?;
+            Format::Ies
+        }
+    };
+    let (version, mut findings, bridged) = match format {
         Format::Ies => {
-            let Checked { value, mut findings } = ies::parse_with(bytes, ies::ReadOptions { repair: options.repair })?;
-            let version = value.version.to_string();
-            let bridged = value.into_luminaire()?;
-            findings.extend(bridged.findings);
-            Ok(Checked { value: File { format: Format::Ies, version, luminaire: bridged.value }, findings })
+            let Checked { value, findings } = ies::parse_text(&text, ies::ReadOptions { repair })?;
+            (value.version.to_string(), findings, value.into_luminaire()?)
         }
-        Format::Eulumdat => Ok(eulumdat::read_with(bytes, eulumdat::ReadOptions { repair: options.repair })?
-            .map(|luminaire| File { format: Format::Eulumdat, version: "EULUMDAT".to_owned(), luminaire })),
+        Format::Eulumdat => {
+            let Checked { value, findings } = eulumdat::parse_text(&text, eulumdat::ReadOptions { repair })?;
+            ("EULUMDAT".to_owned(), findings, Checked::<Luminaire>::try_from(&value)?)
+        }
         Format::Tm33 => {
-            let Checked { value, mut findings } = tm33::parse(bytes)?;
-            let version = edition(value.schema).to_owned();
-            let bridged = Checked::<Luminaire>::try_from(&value)?;
-            findings.extend(bridged.findings);
-            Ok(Checked { value: File { format: Format::Tm33, version, luminaire: bridged.value }, findings })
+            let Checked { value, findings } = tm33::parse_text(&text)?;
+            (edition(value.schema).to_owned(), findings, Checked::<Luminaire>::try_from(&value)?)
         }
-    }
+    };
+    findings.extend(bridged.findings);
+    Ok(Checked { value: File { format, version, luminaire: bridged.value }, findings })
 }
 
 /// The name of a TM-33 edition.

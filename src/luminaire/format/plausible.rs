@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | L101 | info | the text is not UTF-8 and was read as Windows-1252 |
 //! | L110 | warning, error | negative intensities were kept; error where the flux itself is negative |
-//! | L111 | error | all intensities are zero |
+//! | L111 | error | all intensities are zero, or the table spans no solid angle: there is no flux |
 //! | L112 | info, warning | the integrated flux is not the declared one (1 %, 5 %) |
 //! | L113 | warning | more flux leaves the luminaire than its lamps give |
 //! | L114 | info, warning | planes disagree at the pole, where they meet in one direction (1 %, 5 % of the peak) |
@@ -12,7 +12,7 @@
 //! | L116 | info, warning | the downward fraction is not the declared one (1 %, 5 %) |
 
 use crate::finding::{Finding, Severity};
-use crate::luminaire::{Kind, Luminaire, System};
+use crate::luminaire::{Kind, Luminaire, System, zonal};
 
 /// Findings about a luminaire of any format.
 #[must_use]
@@ -27,6 +27,12 @@ pub fn check(luminaire: &Luminaire) -> Vec<Finding> {
         return findings;
     }
     let flux = distribution.total_flux();
+    if flux == 0.0 && low == 0.0 {
+        let message =
+            "the table spans no solid angle, so that its intensities make no flux: there is nothing to calculate with";
+        findings.push(Finding::error("L111", message).hint("a table needs two angles or more between the poles"));
+        return findings;
+    }
     if low < 0.0 {
         let count = values.iter().filter(|v| **v < 0.0).count();
         let severity = if flux <= 0.0 { Severity::Error } else { Severity::Warning };
@@ -43,8 +49,7 @@ pub fn check(luminaire: &Luminaire) -> Vec<Finding> {
         };
         findings.extend(graded("L112", flux / declared - 1.0, message));
     }
-    let lamps: Option<f64> = luminaire.lamps.iter().map(|l| l.flux_lm).sum();
-    if let Some(lamps) = lamps.filter(|l| *l > 0.0 && !luminaire.absolute && luminaire.kind == Kind::Luminous) {
+    if let Some(lamps) = zonal::lamp_flux_lm(luminaire).filter(|_| luminaire.kind == Kind::Luminous) {
         let ratio = flux / lamps;
         if ratio > 1.005 {
             let message = format!(

@@ -1,12 +1,71 @@
-//! `lamp info`: the facts and figures of one luminaire.
-
-use std::fmt::Write;
+//! `lamp info`: the facts and figures of one luminaire, and how each is defined.
 
 use serde_json::{Map, Value, json};
 
 use crate::luminaire::format::{File, Format};
-use crate::luminaire::{Body, Kind, Symmetry, System, beam, bug, lcs, luminance, nema, spacing, zonal};
-use crate::units::significant;
+use crate::luminaire::{Body, Kind, Symmetry, System, beam, bug, cone, lcs, luminance, nema, spacing, zonal};
+
+/// Distances of the cone's rows, m.
+const CONE_DISTANCES_M: [f64; 5] = [1.0, 2.0, 3.0, 4.0, 5.0];
+
+/// Definition of each figure of `lamp info` by its key; of fluxes and intensities in any unit.
+const DEFINITIONS: [(&str, &str); 17] = [
+    ("declared_flux", "as the file states it: luminaire flux, or rated flux of the lamps"),
+    ("total_flux", "exact integral of the intensity interpolated linearly in both angles"),
+    (
+        "total_flux_zonal",
+        "zonal-constant rule: native intervals, mean of the ends times the zone's solid angle (IES LM-79)",
+    ),
+    (
+        "peak_direction_deg",
+        "first largest entry of the table; C and γ, for Types A and B horizontal and vertical angle",
+    ),
+    (
+        "beam_angle_deg",
+        "50 %: fwhm of the plane's maximum; outermost of the maximum of all planes (IES LM-35); of the value at nadir",
+    ),
+    ("field_angle_deg", "10 %: as beam_angle_deg"),
+    ("nema_type", "horizontal, vertical: by the outermost 10 % of the maximum (NEMA FA 1); Types A and B only"),
+    ("lcs_lm", "flux in the ten solid angles of IES TM-15-11; street side C0 in LM-63, C90 in EULUMDAT and TM-33"),
+    ("bug_rating", "IES TM-15-11, Addendum A; Type V where the quadrants agree within a tenth of the maximum"),
+    ("luminance_cd_per_m2", "intensity over the projected area of the luminous opening (CIE 117, EN 13032-2)"),
+    ("downward_flux_fraction", "flux below the horizontal over all flux (DFF, CIE 121)"),
+    ("cie_flux_code", "N1 to N5, per cent (CIE 52, EN 13032-2)"),
+    ("zonal_flux_lm", "exact integral by zones of 10° of γ"),
+    ("luminous_efficacy_lm_per_w", "flux of the luminaire over its input power"),
+    ("light_output_ratio", "flux of the luminaire over the rated flux of its lamps"),
+    (
+        "spacing_criterion",
+        "spacing over mounting height at which the midpoint falls below the point under one luminaire (IES Handbook)",
+    ),
+    ("equivalent_cone", "circular cone of the solid angle in which the intensity reaches half of its maximum"),
+];
+
+/// Definitions of the figures, for the settings of a run.
+#[must_use]
+pub fn definitions() -> Value {
+    DEFINITIONS.into_iter().map(|(key, text)| (key.to_owned(), Value::from(text))).collect::<Map<_, _>>().into()
+}
+
+/// Keys of one kind of intensity.
+struct Keys {
+    flux: &'static str,
+    peak: &'static str,
+    /// What the intensity makes on the axis.
+    axis: &'static str,
+}
+
+fn keys(kind: Kind) -> Keys {
+    match kind {
+        Kind::Luminous => Keys { flux: "flux_lm", peak: "peak_intensity_cd", axis: "axis_illuminance_lx" },
+        Kind::Radiant => Keys { flux: "flux_w", peak: "peak_intensity_w_per_sr", axis: "axis_irradiance_w_per_m2" },
+        Kind::Photon => Keys {
+            flux: "flux_umol_per_s",
+            peak: "peak_intensity_umol_per_s_sr",
+            axis: "axis_photon_irradiance_umol_per_m2_s",
+        },
+    }
+}
 
 /// C-plane of the street side: C0 in LM-63, C90 in EULUMDAT and TM-33.
 fn street_side(file: &File) -> f64 {
@@ -40,23 +99,14 @@ pub fn info(file: &File) -> Map<String, Value> {
     set("vertical_angles", d.vertical_deg().len().into());
     set("horizontal_angles", d.horizontal_deg().len().into());
     set("absolute", lamp.absolute.into());
-    let (flux, zonal_flux, peak_key, declared) = match lamp.kind {
-        Kind::Luminous => ("total_flux_lm", "total_flux_zonal_lm", "peak_intensity_cd", "declared_flux_lm"),
-        Kind::Radiant => ("total_flux_w", "total_flux_zonal_w", "peak_intensity_w_per_sr", "declared_flux_w"),
-        Kind::Photon => (
-            "total_flux_umol_per_s",
-            "total_flux_zonal_umol_per_s",
-            "peak_intensity_umol_per_s_sr",
-            "declared_flux_umol_per_s",
-        ),
-    };
+    let keys = keys(lamp.kind);
     if let Some(value) = lamp.declared_flux.or_else(|| zonal::lamp_flux_lm(lamp)) {
-        set(declared, value.into());
+        set(&format!("declared_{}", keys.flux), value.into());
     }
-    set(flux, d.total_flux().into());
-    set(zonal_flux, d.total_flux_zonal().into());
+    set(&format!("total_{}", keys.flux), d.total_flux().into());
+    set(&keys.flux.replacen("flux", "total_flux_zonal", 1), d.total_flux_zonal().into());
     let (peak, h, v) = d.peak();
-    set(peak_key, peak.into());
+    set(keys.peak, peak.into());
     set("peak_direction_deg", json!({"c": h, "gamma": v}));
     let angles = |list: [beam::PlaneAngles; 3]| -> Value {
         list.iter()
@@ -105,6 +155,15 @@ pub fn info(file: &File) -> Map<String, Value> {
     if let Ok(s) = spacing::spacing_criterion(d) {
         set("spacing_criterion", json!({"c0_c180": s.c0_c180, "c90_c270": s.c90_c270, "diagonal": s.diagonal}));
     }
+    if let Some(e) = cone::equivalent_cone(d) {
+        set(
+            "equivalent_cone",
+            json!({"angle_deg": e.angle_deg, "solid_angle_sr": e.solid_angle_sr, keys.flux: e.flux}),
+        );
+    }
+    let cone = cone::cone(d, &CONE_DISTANCES_M);
+    let cone = cone.iter().map(|r| json!({"distance_m": r.distance_m, keys.axis: r.axis_lx, "width_c0_c180_m": r.width_m[0], "width_c90_c270_m": r.width_m[1]}));
+    set("cone", cone.collect::<Vec<_>>().into());
     if let Some(opening) = &lamp.opening {
         set("luminous_opening_m", body(opening));
     }
@@ -113,7 +172,7 @@ pub fn info(file: &File) -> Map<String, Value> {
 }
 
 fn body(b: &Body) -> Value {
-    json!({"shape": format!("{:?}", b.shape).to_lowercase(), "length_m": b.length_m, "width_m": b.width_m, "height_m": b.height_m})
+    json!({"shape": b.shape.name(), "length_m": b.length_m, "width_m": b.width_m, "height_m": b.height_m})
 }
 
 fn system(system: System) -> &'static str {
@@ -132,104 +191,4 @@ fn symmetry(symmetry: Symmetry) -> &'static str {
         Symmetry::BilateralC90 => "bilateral_c90_c270",
         Symmetry::None => "none",
     }
-}
-
-/// `lamp info` for people, from the JSON object.
-#[must_use]
-pub fn info_text(path: &str, o: &Map<String, Value>) -> String {
-    let mut out = format!("{path}: {} ({})\n\n", text(o, "name"), text(o, "format_version"));
-    // Writing to a string cannot fail.
-    let mut line = |label: &str, value: String| {
-        if !value.is_empty() {
-            let _ = writeln!(out, "  {label:<26} {value}");
-        }
-    };
-    line("manufacturer", text(o, "manufacturer"));
-    line(
-        "photometry",
-        format!(
-            "Type {}, {} symmetry, {} × {} angles",
-            text(o, "photometry_type"),
-            text(o, "symmetry").replace('_', " "),
-            number(o, "horizontal_angles", 6),
-            number(o, "vertical_angles", 6)
-        ),
-    );
-    for (unit, flux, zonal, peak, declared) in [
-        ("lm", "total_flux_lm", "total_flux_zonal_lm", "peak_intensity_cd", "declared_flux_lm"),
-        ("W", "total_flux_w", "total_flux_zonal_w", "peak_intensity_w_per_sr", "declared_flux_w"),
-        (
-            "µmol/s",
-            "total_flux_umol_per_s",
-            "total_flux_zonal_umol_per_s",
-            "peak_intensity_umol_per_s_sr",
-            "declared_flux_umol_per_s",
-        ),
-    ] {
-        if !o.contains_key(flux) {
-            continue;
-        }
-        line("flux (exact integral)", format!("{} {unit}", number(o, flux, 6)));
-        line("flux (zonal rule)", format!("{} {unit}", number(o, zonal, 6)));
-        if o.contains_key(declared) {
-            line("flux declared", format!("{} {unit}", number(o, declared, 6)));
-        }
-        let peak_unit = match unit {
-            "lm" => "cd",
-            "W" => "W/sr",
-            _ => "µmol/(s·sr)",
-        };
-        let (c, gamma) = (&o["peak_direction_deg"]["c"], &o["peak_direction_deg"]["gamma"]);
-        line("peak", format!("{} {peak_unit} at {c}°, {gamma}°", number(o, peak, 6)));
-    }
-    for (label, key) in [("beam angle (50 %)", "beam_angle_deg"), ("field angle (10 %)", "field_angle_deg")] {
-        let shown: Vec<String> = (o[key].as_array().into_iter().flatten())
-            .map(|a| {
-                format!(
-                    "{} × {}° ({})",
-                    angle(&a["c0_c180"]),
-                    angle(&a["c90_c270"]),
-                    a["definition"].as_str().unwrap_or_default()
-                )
-            })
-            .collect();
-        line(label, shown.join(", "));
-    }
-    if let Some(code) = o.get("cie_flux_code").and_then(Value::as_array) {
-        line(
-            "CIE flux code",
-            code.iter().filter_map(Value::as_f64).map(|v| format!("{v:.0}")).collect::<Vec<_>>().join(" "),
-        );
-    }
-    line("downward fraction", number(o, "downward_flux_fraction", 4));
-    line("input power", number(o, "input_power_w", 4) + if o.contains_key("input_power_w") { " W" } else { "" });
-    line(
-        "luminous efficacy",
-        number(o, "luminous_efficacy_lm_per_w", 4)
-            + if o.contains_key("luminous_efficacy_lm_per_w") { " lm/W" } else { "" },
-    );
-    line("BUG rating", text(o, "bug_rating"));
-    if let Some(s) = o.get("spacing_criterion") {
-        line(
-            "spacing criterion",
-            format!("{} (C0–180), {} (C90–270), {} (diagonal)", s["c0_c180"], s["c90_c270"], s["diagonal"]),
-        );
-    }
-    out
-}
-
-fn text(o: &Map<String, Value>, key: &str) -> String {
-    o.get(key).and_then(Value::as_str).unwrap_or_default().to_owned()
-}
-
-fn number(o: &Map<String, Value>, key: &str, digits: usize) -> String {
-    match o.get(key) {
-        Some(Value::Number(n)) if n.is_u64() => n.to_string(),
-        Some(v) => v.as_f64().map_or_else(String::new, |v| significant(v, digits)),
-        None => String::new(),
-    }
-}
-
-fn angle(value: &Value) -> String {
-    value.as_f64().map_or_else(|| "–".to_owned(), |v| format!("{v:.1}"))
 }

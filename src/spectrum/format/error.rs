@@ -1,11 +1,10 @@
 //! Why a file could not be read, and where in it.
 
 use std::borrow::Cow;
-use std::fmt;
 use std::io;
 
 use super::super::UnitError;
-use crate::finding::Location;
+use crate::finding::{Located, Location};
 
 fn shown(cell: &str) -> Cow<'static, str> {
     if cell.is_empty() { "an empty cell".into() } else { format!("`{cell}`").into() }
@@ -207,77 +206,8 @@ pub enum ErrorKind {
     Unit(#[from] UnitError),
 }
 
-/// An [`ErrorKind`] with its place and a hint. Displays as `LINE:COLUMN: found …; expected …; hint`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Error(Box<Report>);
-
-#[derive(Debug, Clone, PartialEq)]
-struct Report {
-    location: Location,
-    kind: ErrorKind,
-    hint: Option<Cow<'static, str>>,
-}
-
-impl Error {
-    pub(super) fn new(location: Location, kind: impl Into<ErrorKind>) -> Self {
-        Self(Box::new(Report { location, kind: kind.into(), hint: None }))
-    }
-
-    /// An error of the input as a whole.
-    pub(super) fn whole(kind: impl Into<ErrorKind>) -> Self {
-        Self::new(Location::at(1, 1), kind)
-    }
-
-    pub(super) fn at(line: u64, column: u64, kind: impl Into<ErrorKind>) -> Self {
-        Self::new(Location::at(line, column), kind)
-    }
-
-    pub(super) fn with_hint(mut self, hint: impl Into<Cow<'static, str>>) -> Self {
-        self.0.hint = Some(hint.into());
-        self
-    }
-
-    /// What is wrong.
-    #[must_use]
-    pub fn kind(&self) -> &ErrorKind {
-        &self.0.kind
-    }
-
-    /// Where: line and column wherever the fault is in the text. The path is left to whoever opened the file.
-    #[must_use]
-    pub fn location(&self) -> &Location {
-        &self.0.location
-    }
-
-    /// What the user can do about it.
-    #[must_use]
-    pub fn hint(&self) -> Option<&str> {
-        self.0.hint.as_deref()
-    }
-
-    /// The same error, in the file named.
-    #[must_use]
-    pub fn in_file(mut self, path: &str) -> Self {
-        self.0.location.path = Some(path.to_owned());
-        self
-    }
-}
-
-impl std::error::Error for Error {}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let place = self.0.location.to_string();
-        if !place.is_empty() {
-            write!(f, "{place}: ")?;
-        }
-        write!(f, "{}", self.0.kind)?;
-        match &self.0.hint {
-            Some(hint) => write!(f, "; {hint}"),
-            None => Ok(()),
-        }
-    }
-}
+/// An [`ErrorKind`] with its place and a hint.
+pub type Error = Located<ErrorKind>;
 
 impl From<io::Error> for Error {
     fn from(error: io::Error) -> Self {

@@ -62,6 +62,7 @@ mod parse;
 mod planes;
 mod write;
 
+pub(super) use parse::parse_text;
 pub use parse::{ReadOptions, parse, parse_with};
 pub use write::write;
 

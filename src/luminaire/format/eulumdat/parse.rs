@@ -1,7 +1,7 @@
 //! From bytes to [`Eulumdat`].
 
 use super::super::error::{Error, ErrorKind};
-use super::super::text;
+use super::super::text::{Text, decode};
 use super::fields::Fields;
 use super::layout::layout;
 use super::{Eulumdat, Isym, LampSetLines};
@@ -36,8 +36,12 @@ pub fn parse(bytes: &[u8]) -> Result<Checked<Eulumdat>, Error> {
 /// [`Error`] with line, field, found and expected where the file is cut off, a number is missing, not finite or out of range,
 /// or counts contradict the table.
 pub fn parse_with(bytes: &[u8], options: ReadOptions) -> Result<Checked<Eulumdat>, Error> {
-    let text = text::decode(bytes)?;
-    let mut fields = Fields::new(&text, options.repair);
+    parse_text(&decode(bytes)?, options)
+}
+
+/// The same from text.
+pub(in super::super) fn parse_text(text: &Text<'_>, options: ReadOptions) -> Result<Checked<Eulumdat>, Error> {
+    let mut fields = Fields::new(text, options.repair);
     let company = fields.text("company (line 1)")?;
     let type_indicator = fields.described("Ityp (line 2)")?;
     if type_indicator.fract() != 0.0 || type_indicator.abs() > 99.0 {

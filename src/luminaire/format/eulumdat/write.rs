@@ -23,7 +23,7 @@ const MOST_OUTPUT: f64 = 1.005;
 /// [`ErrorKind::Unexpected`] for Types A and B and for radiant or photon intensity, which the format does not have.
 pub fn write(luminaire: &Luminaire) -> Result<Checked<String>, Error> {
     let table = &luminaire.distribution;
-    let refused = |found: &str, expected: &str, hint: &str| {
+    let refused = |found: &str, expected: &str, hint: &'static str| {
         let kind = ErrorKind::Unexpected { found: found.to_owned(), expected: expected.to_owned() };
         Err(Error::new(Location::default(), kind).with_hint(hint))
     };
@@ -144,7 +144,7 @@ impl Writer {
             let mm = |m: f64| (m * 1e6).round() / 1e3;
             let [length, width, height] = [mm(body.length_m), mm(body.width_m), mm(body.height_m)];
             let mut lost = |as_what: &str| {
-                let message = format!("{name}: the shape {:?} was written as {as_what}", body.shape);
+                let message = format!("{name}: the shape {} was written as {as_what}", body.shape.name());
                 self.findings.push(Finding::info("L290", message));
             };
             match body.shape {

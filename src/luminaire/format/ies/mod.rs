@@ -70,6 +70,7 @@ mod tilt;
 mod version;
 mod write;
 
+pub(super) use parse::parse_text;
 pub use parse::{ReadOptions, parse, parse_with};
 pub use tilt::TiltTable;
 pub use version::{Version, file_generation};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::error::Error;
-use super::super::text::{decode, place};
+use super::super::text::{Text, decode, place};
 use super::RawIes;
 use super::header::header;
 use super::table::Reader;
@@ -31,12 +31,16 @@ pub fn parse(bytes: &[u8]) -> Result<Checked<RawIes>, Error> {
 /// Anything that leaves a value in doubt: no TILT line, a token that is no number, NaN, counts that contradict the numbers
 /// given, an unknown photometric type or unit, angles out of order or range. Each with its place and what was expected.
 pub fn parse_with(bytes: &[u8], options: ReadOptions) -> Result<Checked<RawIes>, Error> {
-    let decoded = decode(bytes)?;
+    parse_text(&decode(bytes)?, options)
+}
+
+/// The same from text.
+pub(in super::super) fn parse_text(decoded: &Text<'_>, options: ReadOptions) -> Result<Checked<RawIes>, Error> {
     let mut findings: Vec<Finding> = decoded.finding.iter().cloned().collect();
-    let header = header(&decoded, &mut findings)?;
-    let text = decoded.text;
+    let header = header(decoded, &mut findings)?;
+    let text: &str = &decoded.text;
     let start = header.numbers;
-    let mut reader = Reader::new(&text, options);
+    let mut reader = Reader::new(text, options);
     match reader.file(&header) {
         Ok(value) => {
             findings.append(&mut reader.findings);
@@ -44,11 +48,11 @@ pub fn parse_with(bytes: &[u8], options: ReadOptions) -> Result<Checked<RawIes>,
         }
         Err(error) => {
             // Commas are delimiters, but some programs write them for points: only where nothing else makes sense.
-            let Some(swapped) = decimal_commas(&text, start) else { return Err(error) };
+            let Some(swapped) = decimal_commas(text, start) else { return Err(error) };
             let mut reader = Reader::new(&swapped, options);
             let Ok(value) = reader.file(&header) else { return Err(error) };
             let message = "the numbers have decimal commas, where LM-63 has points; read as such because the file makes sense in no other way";
-            findings.push(Finding::warning("L012", message).at(place(&text, start)));
+            findings.push(Finding::warning("L012", message).at(place(text, start)));
             findings.append(&mut reader.findings);
             Ok(Checked { value, findings })
         }

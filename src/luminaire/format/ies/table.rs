@@ -146,7 +146,7 @@ impl<'t> Reader<'t> {
     }
 
     /// A factor above 0; one of 0 would load an empty distribution.
-    fn positive(&mut self, factor: At, field: &str, hint: Option<&str>) -> Result<f64, Error> {
+    fn positive(&mut self, factor: At, field: &str, hint: Option<&'static str>) -> Result<f64, Error> {
         if factor.value > 0.0 {
             return Ok(factor.value);
         }

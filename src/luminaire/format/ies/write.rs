@@ -139,7 +139,7 @@ fn lamp_line(out: &mut String, luminaire: &Luminaire, version: Version, findings
         let (signed, carried) = dimensions(version, body);
         opening = signed;
         if !carried {
-            let message = format!("{version} has no signs for an opening like this: {:?}", body.shape);
+            let message = format!("{version} has no signs for an opening like this: {}", body.shape.name());
             findings.push(Finding::warning("L040", message));
         }
     }

@@ -26,7 +26,8 @@ impl Tm33 {
         let [length_m, width_m, height_m] = self.dimensions?.map(|v| v.max(0.0) * scale);
         let shape = match self.shape.as_deref().map(str::to_lowercase).as_deref() {
             Some("align_z") => Shape::Round,
-            Some("align_x" | "align_y") => Shape::HorizontalCylinder,
+            Some("align_x") => Shape::CylinderAlongC0,
+            Some("align_y") => Shape::CylinderAlongC90,
             _ => Shape::Rectangle,
         };
         (length_m > 0.0 || width_m > 0.0).then_some(Body { shape, length_m, width_m, height_m })

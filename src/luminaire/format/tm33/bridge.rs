@@ -59,7 +59,7 @@ impl Tm33 {
             declared_flux: declared(&tables, &self.emitters, kind),
             distribution,
             absolute,
-            lamps: self.emitters.iter().map(|e| lamp_set(e, absolute, &mut findings)).collect(),
+            lamps: together(self.emitters.iter().map(|e| lamp_set(e, absolute, &mut findings)).collect()),
             input_power_w: (watts > 0.0).then_some(watts),
             declared_output_ratio: None,
             declared_downward_fraction: None,
@@ -266,6 +266,27 @@ fn declared(tables: &[IntensityTable], emitters: &[Emitter], kind: Kind) -> Opti
     let stated: Option<f64> = tables.iter().map(|t| t.flux).sum();
     let measured: Option<f64> = emitters.iter().map(|e| e.measured_lumens.filter(|lm| *lm > 0.0)).sum();
     stated.filter(|f| *f > 0.0).or(measured.filter(|_| kind == Kind::Luminous))
+}
+
+/// The lamps of all emitters, which shine at once, as the one set that the model has for them: numbers, fluxes and powers add up
+/// where each is known, texts stand side by side.
+fn together(sets: Vec<LampSet>) -> Vec<LampSet> {
+    if sets.len() < 2 {
+        return sets;
+    }
+    let joined = |text: fn(&LampSet) -> &str| {
+        let mut texts: Vec<&str> = sets.iter().map(text).filter(|t| !t.is_empty()).collect();
+        texts.dedup();
+        texts.join(" + ")
+    };
+    vec![LampSet {
+        count: sets.iter().map(|s| s.count).sum(),
+        name: joined(|s| &s.name),
+        flux_lm: sets.iter().map(|s| s.flux_lm).sum(),
+        colour: joined(|s| &s.colour),
+        rendering: joined(|s| &s.rendering),
+        power_w: sets.iter().map(|s| s.power_w).sum(),
+    }]
 }
 
 fn lamp_set(emitter: &Emitter, absolute: bool, findings: &mut Vec<Finding>) -> LampSet {

@@ -50,6 +50,7 @@ mod write;
 mod xml;
 
 pub use parse::parse;
+pub(super) use parse::parse_text;
 pub use write::write;
 
 use std::fmt;

@@ -3,7 +3,7 @@
 use roxmltree::Node;
 
 use super::super::error::{Error, ErrorKind};
-use super::super::text;
+use super::super::text::{Text, decode, place};
 use super::emitter::emitter;
 use super::xml;
 use super::{Goniometer, Schema, Tm33};
@@ -15,20 +15,16 @@ use crate::finding::{Checked, Finding};
 /// [`Error`] with line and column where the XML is broken, the document is another, a value is missing, no finite number or given
 /// twice, or counts contradict the values.
 pub fn parse(bytes: &[u8]) -> Result<Checked<Tm33>, Error> {
-    let text = text::decode(bytes)?;
+    parse_text(&decode(bytes)?)
+}
+
+/// The same from text.
+pub(in super::super) fn parse_text(text: &Text<'_>) -> Result<Checked<Tm33>, Error> {
     // XML declarations may only stand at the very start.
     let content = text.text.trim_start();
     let skipped = &text.text[..text.text.len() - content.len()];
-    let lines_before = text::place(skipped, skipped.len()).line.map_or(0, |line| line - 1);
-    read(content, text.finding.clone()).map_err(|error| {
-        let mut location = error.location().clone();
-        location.line = location.line.map(|line| line + lines_before);
-        let moved = Error::new(location, error.kind().clone());
-        match error.hint() {
-            Some(hint) => moved.with_hint(hint),
-            None => moved,
-        }
-    })
+    let lines_before = place(skipped, skipped.len()).line.map_or(0, |line| line - 1);
+    read(content, text.finding.clone()).map_err(|error| error.below(lines_before))
 }
 
 fn read(content: &str, encoding: Option<Finding>) -> Result<Checked<Tm33>, Error> {

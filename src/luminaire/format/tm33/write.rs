@@ -134,10 +134,11 @@ impl Writer {
         self.close("Dimensions");
         match body.shape {
             Shape::Round => self.leaf("Shape", "Align_Z"),
-            Shape::HorizontalCylinder => self.leaf("Shape", "Align_Y"),
+            Shape::CylinderAlongC0 => self.leaf("Shape", "Align_X"),
+            Shape::CylinderAlongC90 => self.leaf("Shape", "Align_Y"),
             Shape::Rectangle => {}
             other => {
-                let message = format!("housing: the shape {other:?} was written as the box around it");
+                let message = format!("housing: the shape {} was written as the box around it", other.name());
                 self.findings.push(Finding::info("L390", message));
             }
         }
@@ -256,8 +257,9 @@ impl Writer {
         if matches!(body.shape, Shape::Point) || (body.length_m <= 0.0 && body.width_m <= 0.0) {
             return;
         }
-        if matches!(body.shape, Shape::Sphere | Shape::HorizontalCylinder) {
-            let message = format!("luminous opening: the shape {:?} was written as the faces around it", body.shape);
+        if matches!(body.shape, Shape::Sphere | Shape::CylinderAlongC0 | Shape::CylinderAlongC90) {
+            let message =
+                format!("luminous opening: the shape {} was written as the faces around it", body.shape.name());
             self.findings.push(Finding::info("L390", message));
         }
         let table = &luminaire.distribution;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::output::Sink;
+use super::output::Sink;
 use crate::finding::Finding;
 use crate::report::envelope::{Envelope, Input};
 
@@ -61,4 +61,12 @@ impl<'a> Writer<'a> {
         }
         Ok(self.results)
     }
+}
+
+/// The cells of one row of a table.
+pub(super) fn csv_row(cells: &[String]) -> Vec<u8> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    // A vector takes every byte.
+    let _ = writer.write_record(cells);
+    writer.into_inner().unwrap_or_default()
 }
