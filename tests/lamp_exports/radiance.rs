@@ -159,6 +159,15 @@ fn every_opening_gives_the_same_intensities() {
 }
 
 #[test]
+fn light_between_rows_on_both_sides_of_the_horizon_is_kept() {
+    // Nothing at nadir, light at the horizon: the straight line between them is light below.
+    let rows = vec![0.0, 90.0, 135.0, 180.0];
+    let values = vec![0.0, 300.0, 500.0, 100.0];
+    let distribution = Distribution::new(System::TypeC, Symmetry::Rotational, vec![0.0], rows, values);
+    agree(&lamp(distribution.expect("a table")), LUMENS_PER_WATT);
+}
+
+#[test]
 fn light_to_one_side_has_surfaces_on_that_side() {
     let gammas = [tables().remove(5), tables().remove(6)];
     for (distribution, sign) in gammas.into_iter().zip([-1.0, 1.0]) {

@@ -56,6 +56,7 @@ pub fn write(luminaire: &Luminaire, stem: &str, pixels: Option<usize>) -> Export
         });
         let light: f64 = picture.pixels.iter().map(|v| f64::from(*v)).sum();
         sum += light;
+        // A scene without any emitter would render black with a warning only.
         if light == 0.0 && !(name == "up" && files.is_empty()) {
             continue;
         }

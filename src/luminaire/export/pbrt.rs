@@ -8,7 +8,7 @@
 //! centre = the photometric axis (−z)    right = C0 (+x)    down = C90 (+y)    corners = up (+z)
 //! ```
 //!
-//! Pixels hold candela. The `illuminant` of the colour space, pbrt's default spectrum, is divided by its own luminous integral,
+//! Pixels hold candela, the mean of four directions. The `illuminant` of the colour space, pbrt's default spectrum, is divided by its own luminous integral,
 //! so that with `scale` 1 pictures of an unscaled film (`cie1931` sensor, exposure 1, ISO 100) are in cd/m².
 
 use super::common::{
@@ -21,6 +21,10 @@ use crate::luminaire::Luminaire;
 
 /// Pixels on a side by default.
 pub const SIDE: usize = 1024;
+
+/// Where a pixel is sampled, in pixels from its corner: a turned grid, so that of a pixel across the horizon, which is a diagonal of
+/// the picture, one half of the samples is on either side.
+const SAMPLES: [(f64, f64); 4] = [(0.625, 0.875), (0.875, 0.375), (0.375, 0.125), (0.125, 0.625)];
 
 /// The direction of a point of the unit square in the picture's frame, for z towards the centre.
 ///
@@ -45,8 +49,11 @@ pub fn write(luminaire: &Luminaire, stem: &str, pixels: Option<usize>) -> Export
     let n = side(pixels, SIDE)?;
     let d = &luminaire.distribution;
     let picture = Picture::of(n, n, |i, j| {
-        let p = direction((i as f64 + 0.5) / n as f64, (j as f64 + 0.5) / n as f64);
-        d.towards(glam::DVec3::new(p.x, p.y, -p.z)).max(0.0) as f32
+        let at = |(s, t): (f64, f64)| {
+            let p = direction((i as f64 + s) / n as f64, (j as f64 + t) / n as f64);
+            d.towards(glam::DVec3::new(p.x, p.y, -p.z)).max(0.0)
+        };
+        (SAMPLES.into_iter().map(at).sum::<f64>() / SAMPLES.len() as f64) as f32
     });
     let flux = picture.pixels.iter().map(|v| f64::from(*v)).sum::<f64>() * SPHERE_SR / (n * n) as f64;
     let units = Units::of(luminaire.kind);

@@ -102,6 +102,17 @@ impl Table {
         Self { horizontal_deg: self.horizontal_deg.clone(), vertical_deg, values }
     }
 
+    /// Whether there is light below or above the horizon, by the interpolated values; the step of an end does not count.
+    pub(super) fn shines(&self, above: bool) -> bool {
+        let count = self.vertical_deg.len();
+        let counts =
+            |low: f64, high: f64| if above { high > 90.0 + 2.0 * EDGE_DEG } else { low < 90.0 - 2.0 * EDGE_DEG };
+        (0..count - 1).filter(|j| counts(self.vertical_deg[*j], self.vertical_deg[j + 1])).any(|j| {
+            let rows = self.values.chunks(count).map(|plane| &plane[j..=j + 1]);
+            rows.flatten().any(|v| *v > 0.0)
+        })
+    }
+
     /// The table as a distribution of Type C.
     pub(super) fn distribution(&self) -> Result<Distribution, Error> {
         let symmetry = if self.horizontal_deg.len() == 1 { Symmetry::Rotational } else { Symmetry::None };
@@ -151,5 +162,21 @@ mod tests {
         let whole = Table::unfolded(&d.expect("a table")).to_the_poles();
         assert_eq!(whole.vertical_deg, [0.0, 30.0 - EDGE_DEG, 30.0, 60.0, 60.0 + EDGE_DEG, 180.0]);
         assert_eq!(whole.values, [0.0, 0.0, 5.0, 7.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_side_shines_if_the_interpolated_light_reaches_it() {
+        for (rows, values, below, above) in [
+            // Straight lines from darkness at nadir to light at the horizon.
+            ([0.0, 90.0, 180.0], [0.0, 5.0, 5.0], true, true),
+            ([60.0, 80.0, 90.0], [0.0, 5.0, 5.0], true, false),
+            ([90.0, 100.0, 180.0], [5.0, 5.0, 0.0], false, true),
+            ([0.0, 90.0, 180.0], [0.0, 0.0, 5.0], false, true),
+            ([0.0, 90.0, 180.0], [0.0, 0.0, 0.0], false, false),
+        ] {
+            let d = Distribution::new(System::TypeC, Symmetry::Rotational, vec![0.0], rows.to_vec(), values.to_vec());
+            let table = Table::unfolded(&d.expect("a table")).to_the_poles();
+            assert_eq!((table.shines(false), table.shines(true)), (below, above), "{rows:?} {values:?}");
+        }
     }
 }

@@ -47,14 +47,7 @@ pub fn write(luminaire: &Luminaire, stem: &str) -> Exported {
         table
     }
     .to_the_poles();
-    let shines = |above: bool| {
-        table
-            .values
-            .iter()
-            .zip(table.vertical_deg.iter().cycle())
-            .any(|(v, g)| *v > 0.0 && if above { *g > 90.0 } else { *g < 90.0 })
-    };
-    let (surfaces, replaced) = Surfaces::of(luminaire.opening.as_ref(), shines(false), shines(true));
+    let (surfaces, replaced) = Surfaces::of(luminaire.opening.as_ref(), table.shines(false), table.shines(true));
     findings.extend(replaced.map(|message| Finding::info("L505", message)));
     findings.extend(negative(luminaire));
     findings.extend(other_kind(luminaire));
