@@ -82,6 +82,22 @@ pub(super) fn write_file(path: &Path, bytes: &[u8], inputs: &[String]) -> Result
     sink.finish(true)
 }
 
+/// Writes whole files that belong together, under the same promises: none is moved to its place before all are written.
+///
+/// That none of them is an input is the caller's to see to.
+pub(super) fn write_files(files: &[(PathBuf, &[u8])]) -> Result<(), Failure> {
+    let mut sinks = Vec::with_capacity(files.len());
+    for (path, bytes) in files {
+        let mut sink = Sink::open(Some(path), &[])?;
+        sink.write_all(bytes).map_err(|e| match e.kind() {
+            io::ErrorKind::BrokenPipe => Failure::BrokenPipe,
+            _ => cannot(path, &e),
+        })?;
+        sinks.push(sink);
+    }
+    sinks.into_iter().try_for_each(|sink| sink.finish(true))
+}
+
 fn cannot(path: &Path, error: &io::Error) -> Failure {
     Failure::Message(format!(
         "{}: cannot be written: {error}; expected a file in a folder that can be written to",
@@ -98,12 +114,16 @@ pub(super) fn same_file(a: &Path, b: &Path) -> bool {
     resolve(a).is_some_and(|a| resolve(b) == Some(a))
 }
 
+/// Why an output that is an input is refused.
+pub(super) fn overwrites(path: &Path) -> String {
+    format!("{}: the output would overwrite an input; expected another file", path.display())
+}
+
 fn refuse_input(path: &Path, inputs: &[String]) -> Result<(), Failure> {
     let Ok(target) = fs::canonicalize(path) else { return Ok(()) };
     let same = inputs.iter().any(|i| fs::canonicalize(i).is_ok_and(|i| i == target));
     if same {
-        let message = format!("{}: the output would overwrite an input; expected another file", path.display());
-        return Err(Failure::Message(message));
+        return Err(Failure::Message(overwrites(path)));
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ pub mod bug;
 pub mod cone;
 pub mod cu;
 pub mod distribution;
+pub mod export;
 mod flux;
 pub mod format;
 pub mod lcs;

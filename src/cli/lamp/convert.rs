@@ -1,27 +1,41 @@
-//! `lamp convert`: a lamp file in another format.
+//! `lamp convert`: lamp files in another format.
+
+mod place;
+mod target;
 
 use std::path::PathBuf;
 
 use clap::Args;
+use rayon::prelude::*;
 
+use self::place::Places;
+use self::target::{Choice, Target, encode};
+use super::files::FILES_AT_ONCE;
 use super::load::load;
 use crate::cli::notes::Notes;
-use crate::cli::{Failure, Talk, output};
-use crate::finding::Checked;
-use crate::luminaire::format::{eulumdat, ies, tm33};
+use crate::cli::{Failure, Talk};
+use crate::finding::Finding;
+use crate::luminaire::format::ies;
 
 /// Arguments of `lamp convert`.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ConvertArgs {
-    /// A lamp file, or `-`.
-    #[arg(value_name = "FILE")]
-    file: String,
-    /// The file to write: its ending says the format.
-    #[arg(short, long, value_name = "FILE")]
+    /// Lamp files (IES LM-63, EULUMDAT, TM-33), or `-`.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<String>,
+    /// The file to write, a folder for many (`DIR/`), or `-`. An ending .ies, .ldt, .xml (TM-33), .csv, .rad, .pbrt or .exr
+    /// says the format.
+    #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    /// The format, where the name of the output does not say it.
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    to: Option<Target>,
     /// Edition of LM-63 to write: 1986, 1991, 1995, 2002, 2019.
     #[arg(long, value_name = "YEAR", default_value = "2019", value_parser = edition)]
     lm63: ies::Version,
+    /// Pixels on a side of the pictures of pbrt (1024), mitsuba (512 per face of a cube) and exr (1024 high).
+    #[arg(long, value_name = "N")]
+    pixels: Option<usize>,
     /// Repair what can be repaired safely; each repair is listed.
     #[arg(long)]
     repair: bool,
@@ -33,22 +47,53 @@ fn edition(text: &str) -> Result<ies::Version, String> {
 }
 
 pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure> {
-    let inputs = [arguments.file.clone()];
-    let notes = Notes::new(&inputs, talk);
-    let file = load(&arguments.file, arguments.repair).file.map_err(|(message, _)| Failure::Message(message))?;
-    notes.print(&file.findings);
-    let lamp = &file.value.luminaire;
-    let ending = arguments.output.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
-    let written = match ending.as_deref() {
-        Some("ies") => ies::write(lamp, arguments.lm63),
-        Some("ldt") => eulumdat::write(lamp),
-        Some("xml") => tm33::write(lamp),
-        _ => {
-            let message = format!("{}: expected a name ending in .ies, .ldt or .xml", arguments.output.display());
-            return Err(Failure::Message(message));
+    let target = arguments.to.or_else(|| Target::of_name(&arguments.output)).ok_or_else(|| {
+        let message = "expected a name ending in .ies, .ldt, .xml, .csv, .rad, .pbrt or .exr, or --to FORMAT";
+        Failure::Message(format!("{}: {message}", arguments.output.display()))
+    })?;
+    let choice = Choice { target, lm63: arguments.lm63, pixels: arguments.pixels };
+    let places = Places::of(&arguments.files, &arguments.output, target)?;
+    places.prepare()?;
+    let mut notes = Notes::new(&arguments.files, talk);
+    let indices: Vec<usize> = (0..arguments.files.len()).collect();
+    for indices in indices.chunks(FILES_AT_ONCE) {
+        let done: Vec<(Vec<Finding>, Result<(), Failure>)> =
+            indices.par_iter().map(|i| one(arguments, &places, choice, *i)).collect();
+        for (findings, outcome) in done {
+            notes.print(&findings);
+            match outcome {
+                Ok(()) => {}
+                Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
+                Err(failure) => notes.refuse(&failure.to_string()),
+            }
         }
-    };
-    let Checked { value, findings } = written.map_err(|e| Failure::Message(format!("{}: {e}", arguments.file)))?;
-    notes.print(&findings);
-    output::write_file(&arguments.output, value.as_bytes(), &inputs)
+    }
+    if notes.failed { Err(Failure::Reported) } else { Ok(()) }
+}
+
+/// Load, encode, write: the findings on the way, and how it ended.
+fn one(arguments: &ConvertArgs, places: &Places, choice: Choice, index: usize) -> (Vec<Finding>, Result<(), Failure>) {
+    let mut findings = Vec::new();
+    let outcome = write_one(arguments, places, choice, index, &mut findings);
+    (findings, outcome)
+}
+
+fn write_one(
+    arguments: &ConvertArgs,
+    places: &Places,
+    choice: Choice,
+    index: usize,
+    findings: &mut Vec<Finding>,
+) -> Result<(), Failure> {
+    let path = &arguments.files[index];
+    let stem = places.stem(index).map_err(Failure::Message)?;
+    let file = load(path, arguments.repair).file.map_err(|(message, _)| Failure::Message(message))?;
+    findings.extend(file.findings);
+    let (lamp, from) = (file.value.luminaire, file.value.format);
+    let encoded = encode(&lamp, from, &stem, choice).map_err(|e| Failure::Message(format!("{path}: {e}")))?;
+    findings.extend(encoded.findings.into_iter().map(|mut finding| {
+        finding.location.path.get_or_insert_with(|| path.clone());
+        finding
+    }));
+    places.write(index, choice.target, &encoded.value)
 }

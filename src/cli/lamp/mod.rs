@@ -28,7 +28,7 @@ pub(super) enum LampCommand {
     Ugr(FilesArgs),
     /// Zonal-cavity coefficients of utilisation, per cent: room cavity ratios 0 to 10, floor cavity 20 %.
     Cu(FilesArgs),
-    /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
+    /// Other formats: LM-63, EULUMDAT, TM-33, CSV, light sources for Radiance, pbrt and Mitsuba, a picture.
     Convert(convert::ConvertArgs),
 }
 
