@@ -19,7 +19,7 @@ use crate::report::envelope::Envelope;
 use crate::report::lamp as report;
 
 /// Files read at a time: what is held in memory.
-const FILES_AT_ONCE: usize = 256;
+pub(super) const FILES_AT_ONCE: usize = 256;
 
 /// Input files and the form of the answer.
 #[derive(Debug, Args)]

@@ -60,7 +60,7 @@ impl Surfaces {
                 let what = "an ellipsoid: a sphere of its volume stands for it".to_owned();
                 (Self::Sphere { diameter: (x * y * z).cbrt().max(SMALLEST_M) }, (!alike).then_some(what))
             }
-            Shape::HorizontalCylinder => around("a lying cylinder"),
+            Shape::CylinderAlongC0 | Shape::CylinderAlongC90 => around("a lying cylinder"),
             Shape::Point => (point, None),
         }
     }
