@@ -38,7 +38,7 @@ impl Units {
 }
 
 /// The lamp's name and maker on one line.
-pub(super) fn name(luminaire: &Luminaire) -> String {
+fn name(luminaire: &Luminaire) -> String {
     let parts = [&luminaire.name, &luminaire.manufacturer, &luminaire.catalogue_number];
     let line = |text: &String| {
         text.split(|c: char| c.is_control() || c.is_whitespace())
