@@ -100,6 +100,15 @@ fn the_centre_of_a_face_is_exact() {
 }
 
 #[test]
+fn names_are_written_so_that_xml_holds_them() {
+    let files = write(&asymmetric(), "R&D <1>", Some(8)).expect("exported").value;
+    let scene = String::from_utf8(files[0].bytes.clone()).expect("text");
+    let document = roxmltree::Document::parse(&scene).expect("XML");
+    assert!(document.descendants().any(|n| n.attribute("value") == Some("R&D <1>-down.exr")), "{scene}");
+    assert!(write(&asymmetric(), "cost$", Some(8)).is_err());
+}
+
+#[test]
 fn faces_without_light_are_left_out() {
     // Light for γ up to 75° does not reach the face above.
     let downlight = lamp(tables().remove(5));

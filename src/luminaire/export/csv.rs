@@ -11,7 +11,7 @@
 //! written out, so that a sum over the columns is a sum over the turn; a rotational table has the one column that stands for all.
 //! Types A and B have `vertical_deg` and their own horizontal angles.
 
-use super::common::{AXES, heading, not_carried, type_letter};
+use super::notes::{AXES, heading, not_carried, type_letter};
 use super::table::Table;
 use super::{ExportFile, Exported};
 use crate::finding::Checked;
@@ -68,9 +68,6 @@ pub fn write(luminaire: &Luminaire) -> Exported {
         }
         text.push('\n');
     }
-    let mut findings = not_carried(luminaire, "a table");
-    if luminaire.opening.is_some() {
-        findings.push(crate::finding::Finding::info("L501", "a table cannot carry: luminous opening"));
-    }
+    let findings = not_carried(luminaire, "a table", false);
     Ok(Checked { value: vec![ExportFile { suffix: ".csv".to_owned(), bytes: text.into_bytes() }], findings })
 }

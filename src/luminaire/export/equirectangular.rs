@@ -10,10 +10,10 @@
 //! the left for somebody at the lamp who looks outwards: seen as a panorama, the picture is mirrored. Channel `Y` holds the
 //! intensity in cd (W/sr, µmol/(s·sr)) as 32-bit numbers, negative ones too.
 
-use super::common::{heading, not_carried, sampled};
+use super::notes::{heading, not_carried, pixelled};
 use super::picture::{Picture, side};
 use super::{ExportFile, Exported};
-use crate::finding::{Checked, Finding};
+use crate::finding::Checked;
 use crate::luminaire::Luminaire;
 
 /// Height in pixels by default.
@@ -43,16 +43,13 @@ pub fn write(luminaire: &Luminaire, pixels: Option<usize>) -> Exported {
     let flux = (0..height).map(row_flux).sum();
     let mut comments = heading(luminaire, "equirectangular intensity picture");
     comments.extend([
-        super::common::AXES.to_owned(),
+        super::notes::AXES.to_owned(),
         format!("pixel (column i, row j from the top left): C = (i + 0.5) * {step_deg} deg, gamma = 180 - (j + 0.5) * {step_deg} deg"),
         "C from +x (C0) to +y (C90); gamma from -z (down, bottom row) to +z (up, top row)".to_owned(),
         "seen as a panorama from the lamp the picture is mirrored: C increases to the right here".to_owned(),
     ]);
-    let mut findings = not_carried(luminaire, "a picture");
-    if luminaire.opening.is_some() {
-        findings.push(Finding::info("L501", "a picture cannot carry: luminous opening"));
-    }
-    findings.push(sampled(luminaire, flux, &format!("at {width} × {height} pixels")));
+    let mut findings = not_carried(luminaire, "a picture", false);
+    findings.push(pixelled(luminaire, flux, &format!("at {width} × {height} pixels")));
     let bytes = picture.to_exr(&comments)?;
     Ok(Checked { value: vec![ExportFile { suffix: ".exr".to_owned(), bytes }], findings })
 }

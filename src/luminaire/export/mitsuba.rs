@@ -16,9 +16,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::common::{AXES, Units, as_point, checked_stem, heading, negative, not_carried, other_kind, sampled};
+use super::notes::{AXES, Units, as_point, checked_stem, heading, negative, not_carried, other_kind, pixelled};
 use super::picture::{Picture, side};
-use super::{ExportFile, Exported};
+use super::{Error, ExportFile, Exported};
 use crate::finding::Checked;
 use crate::luminaire::Luminaire;
 
@@ -38,9 +38,13 @@ const FACES: [(&str, DVec3, DVec3); 6] = [
 /// Writes the scene (`STEM.xml`, which names the pictures) and the pictures; `pixels` on a side of each.
 ///
 /// # Errors
-/// [`Error::Name`](super::Error::Name), [`Error::Pixels`](super::Error::Pixels), [`Error::Picture`](super::Error::Picture).
+/// [`Error::Name`], [`Error::Pixels`], [`Error::Picture`].
 pub fn write(luminaire: &Luminaire, stem: &str, pixels: Option<usize>) -> Exported {
     checked_stem(stem)?;
+    // Mitsuba takes `$` for the name of a parameter.
+    if stem.contains('$') {
+        return Err(Error::Name { found: stem.to_owned() });
+    }
     let n = side(pixels, SIDE)?;
     let d = &luminaire.distribution;
     let at = |i: usize| 1.0 - 2.0 * (i as f64 + 0.5) / n as f64;
@@ -72,11 +76,11 @@ pub fn write(luminaire: &Luminaire, stem: &str, pixels: Option<usize>) -> Export
     // A pixel of a face is (2/N)² cos³θ sr wide.
     let flux = sum * PI * (2.0 / n as f64).powi(2);
     files.insert(0, ExportFile { suffix: ".xml".to_owned(), bytes: scene(luminaire, &emitters).into_bytes() });
-    let mut findings = not_carried(luminaire, "Mitsuba");
+    let mut findings = not_carried(luminaire, "Mitsuba", true);
     findings.extend(as_point(luminaire, "Mitsuba"));
     findings.extend(negative(luminaire));
     findings.extend(other_kind(luminaire));
-    findings.push(sampled(luminaire, flux, &format!("at {n} × {n} pixels on the faces of a cube")));
+    findings.push(pixelled(luminaire, flux, &format!("at {n} × {n} pixels on the faces of a cube")));
     Ok(Checked { value: files, findings })
 }
 
@@ -100,6 +104,7 @@ fn scene(luminaire: &Luminaire, emitters: &str) -> String {
 }
 
 fn emitter(stem: &str, face: &str, [left, top, forward]: [DVec3; 3]) -> String {
+    let stem = stem.replace('&', "&amp;").replace('<', "&lt;");
     let row = |i: usize| format!("{} {} {} 0", left[i] + 0.0, top[i] + 0.0, forward[i] + 0.0);
     format!(
         "    <emitter type=\"projector\">\n        \

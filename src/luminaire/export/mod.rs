@@ -22,10 +22,10 @@
 //! | L505 | info | the luminous opening was replaced by another surface or by a point |
 //! | L506 | info | a table of Type A or B was sampled at the angles of Type C |
 
-mod common;
 pub mod csv;
 pub mod equirectangular;
 pub mod mitsuba;
+mod notes;
 pub mod pbrt;
 mod picture;
 pub mod radiance;
@@ -55,7 +55,9 @@ pub type Exported = Result<Checked<Vec<ExportFile>>, Error>;
 #[non_exhaustive]
 pub enum Error {
     /// A name that scene files cannot hold.
-    #[error("found the file name `{found}`; expected one without quotation marks, backslashes and control characters")]
+    #[error(
+        "found the file name `{found}`; expected one without quotation marks, backslashes, control characters, `!` at its start and, for Mitsuba, `$`"
+    )]
     Name {
         /// The name without its ending.
         found: String,

@@ -11,8 +11,8 @@
 //! Pixels hold candela, the mean of four directions. The `illuminant` of the colour space, pbrt's default spectrum, is divided by its own luminous integral,
 //! so that with `scale` 1 pictures of an unscaled film (`cie1931` sensor, exposure 1, ISO 100) are in cd/m².
 
-use super::common::{
-    AXES, SPHERE_SR, Units, as_point, checked_stem, heading, negative, not_carried, other_kind, sampled,
+use super::notes::{
+    AXES, SPHERE_SR, Units, as_point, checked_stem, heading, negative, not_carried, other_kind, pixelled,
 };
 use super::picture::{Picture, side};
 use super::{ExportFile, Exported};
@@ -77,11 +77,11 @@ pub fn write(luminaire: &Luminaire, stem: &str, pixels: Option<usize>) -> Export
          AttributeEnd\n",
         units.intensity, units.seen
     ));
-    let mut findings = not_carried(luminaire, "pbrt");
+    let mut findings = not_carried(luminaire, "pbrt", true);
     findings.extend(as_point(luminaire, "pbrt"));
     findings.extend(negative(luminaire));
     findings.extend(other_kind(luminaire));
-    findings.push(sampled(luminaire, flux, &format!("at {n} × {n} pixels of equal solid angle")));
+    findings.push(pixelled(luminaire, flux, &format!("at {n} × {n} pixels of equal solid angle")));
     let bytes = picture.to_exr(&comments)?;
     let files = vec![
         ExportFile { suffix: ".pbrt".to_owned(), bytes: scene.into_bytes() },

@@ -51,7 +51,9 @@ impl Places {
     /// Makes the folder where there is none.
     pub(super) fn prepare(&self) -> Result<(), Failure> {
         let Some(folder) = &self.folder else { return Ok(()) };
-        fs::create_dir_all(folder).map_err(|e| Failure::Message(format!("{}: cannot be made: {e}", folder.display())))
+        fs::create_dir_all(folder).map_err(|e| {
+            Failure::Message(format!("{}: cannot be made: {e}; expected the name of a folder", folder.display()))
+        })
     }
 
     /// What the names of the files for an input begin with, or why there are none.

@@ -14,7 +14,7 @@
 
 mod opening;
 
-use super::common::{AXES, Units, checked_stem, heading, negative, not_carried, other_kind, sampled, type_letter};
+use super::notes::{AXES, Units, checked_stem, heading, negative, not_carried, other_kind, sampled, type_letter};
 use super::table::Table;
 use super::{ExportFile, Exported};
 use crate::finding::{Checked, Finding};
@@ -31,7 +31,7 @@ pub const LUMENS_PER_WATT: f64 = 179.0;
 pub fn write(luminaire: &Luminaire, stem: &str) -> Exported {
     checked_stem(stem)?;
     let d = &luminaire.distribution;
-    let mut findings = not_carried(luminaire, "Radiance");
+    let mut findings = not_carried(luminaire, "Radiance", true);
     let table = if d.system() == System::TypeC {
         Table::unfolded(d)
     } else {

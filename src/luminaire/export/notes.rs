@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Error;
-use crate::finding::Finding;
+use crate::finding::{Finding, Severity};
 use crate::luminaire::{Kind, Luminaire, System};
 
 /// A flux that differs by more than this share is a warning.
@@ -38,7 +38,7 @@ impl Units {
 }
 
 /// The lamp's name and maker on one line.
-pub(super) fn name(luminaire: &Luminaire) -> String {
+fn name(luminaire: &Luminaire) -> String {
     let parts = [&luminaire.name, &luminaire.manufacturer, &luminaire.catalogue_number];
     let line = |text: &String| {
         text.split(|c: char| c.is_control() || c.is_whitespace())
@@ -67,18 +67,25 @@ pub(super) fn heading(luminaire: &Luminaire, what: &str) -> Vec<String> {
     ]
 }
 
-/// A stem that scene files can hold between quotation marks.
+/// Refuses a stem that scene files cannot hold between quotation marks, or that Radiance takes for a command (`!`).
 pub(super) fn checked_stem(stem: &str) -> Result<(), Error> {
-    let bad = |c: char| c.is_control() || matches!(c, '"' | '\'' | '\\' | '<' | '&' | char::REPLACEMENT_CHARACTER);
-    if stem.is_empty() || stem.contains(bad) { Err(Error::Name { found: stem.to_owned() }) } else { Ok(()) }
+    let bad = |c: char| c.is_control() || matches!(c, '"' | '\\' | char::REPLACEMENT_CHARACTER);
+    if stem.is_empty() || stem.starts_with('!') || stem.contains(bad) {
+        Err(Error::Name { found: stem.to_owned() })
+    } else {
+        Ok(())
+    }
 }
 
 /// Findings on facts that the target has no place for.
-pub(super) fn not_carried(luminaire: &Luminaire, target: &str) -> Vec<Finding> {
+///
+/// Light sources treat the opening for themselves; a table has no place for it.
+pub(super) fn not_carried(luminaire: &Luminaire, target: &str, is_light: bool) -> Vec<Finding> {
     let mut findings = Vec::new();
     let lost: Vec<&str> = [
         (!luminaire.lamps.is_empty(), "lamp sets"),
         (luminaire.input_power_w.is_some(), "input power"),
+        (luminaire.opening.is_some() && !is_light, "luminous opening"),
         (luminaire.housing.is_some(), "housing"),
         (!luminaire.keywords.is_empty(), "keywords"),
     ]
@@ -115,17 +122,20 @@ pub(super) fn other_kind(luminaire: &Luminaire) -> Option<Finding> {
     (luminaire.kind != Kind::Luminous).then(|| Finding::info("L503", message()))
 }
 
+/// The finding on a flux that sampling a picture changed.
+pub(super) fn pixelled(luminaire: &Luminaire, written: f64, how: &str) -> Finding {
+    let finding = sampled(luminaire, written, how);
+    if finding.severity == Severity::Info { finding } else { finding.hint("more pixels come nearer") }
+}
+
 /// The finding on a flux that sampling changed.
 pub(super) fn sampled(luminaire: &Luminaire, written: f64, how: &str) -> Finding {
     let given = luminaire.distribution.total_flux();
     let unit = Units::of(luminaire.kind).flux;
     let share = if given == 0.0 { 0.0 } else { written / given - 1.0 };
     let message = format!("sampled {how}: {written:.6} {unit} instead of {given:.6} {unit} ({:+.4} %)", share * 100.0);
-    if share.abs() < NOTICEABLE {
-        Finding::info("L504", message)
-    } else {
-        Finding::warning("L504", message).hint("more pixels come nearer")
-    }
+    let severity = if share.abs() < NOTICEABLE { Severity::Info } else { Severity::Warning };
+    Finding::new("L504", severity, message)
 }
 
 /// For targets without extent: the finding on the opening.
