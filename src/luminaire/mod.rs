@@ -1,5 +1,6 @@
 //! Luminaires: an intensity distribution with the facts that belong to it.
 
+mod angular;
 pub mod beam;
 pub mod bug;
 pub mod cone;
@@ -17,6 +18,7 @@ pub mod ugr;
 mod unavailable;
 pub mod zonal;
 
+pub use angular::AngularSpectra;
 pub use distribution::{Distribution, Symmetry, System};
 pub use model::{Body, Kind, LampSet, Luminaire, Shape};
 pub use unavailable::Unavailable;
