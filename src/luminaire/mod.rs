@@ -3,6 +3,7 @@
 mod angular;
 pub mod beam;
 pub mod bug;
+pub mod compare;
 pub mod cone;
 pub mod cu;
 pub mod distribution;
@@ -13,6 +14,7 @@ pub mod luminance;
 mod model;
 pub mod nema;
 mod room;
+pub mod shape;
 pub mod spacing;
 pub mod ugr;
 mod unavailable;

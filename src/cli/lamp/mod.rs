@@ -1,6 +1,7 @@
 //! `lamp`: goniometric lamp data checked, analysed and converted; one file per verb.
 
 mod check;
+mod compare;
 mod convert;
 mod files;
 mod load;
@@ -22,6 +23,8 @@ pub(super) enum LampCommand {
     Ugr(FilesArgs),
     /// Zonal-cavity coefficients of utilisation, per cent.
     Cu(FilesArgs),
+    /// Two files side by side: flux, peak, beam, shape, and whether one is the other turned; exit code 1 beyond --tolerance.
+    Compare(compare::CompareArgs),
     /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
     Convert(convert::ConvertArgs),
 }
@@ -36,6 +39,7 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
             files(&a, talk, "lamp cu", &|f| report::cu(f).map_err(|e| e.to_string()), &report::rows_text)
         }
         LampCommand::Check(a) => check::check(&a, talk),
+        LampCommand::Compare(a) => compare::compare(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
     }
 }
