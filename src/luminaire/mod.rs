@@ -3,6 +3,7 @@
 mod angular;
 pub mod beam;
 pub mod bug;
+pub mod colour;
 pub mod compare;
 pub mod cone;
 pub mod cu;
@@ -16,6 +17,7 @@ pub mod nema;
 mod room;
 pub mod shape;
 pub mod spacing;
+pub mod spectral;
 pub mod ugr;
 mod unavailable;
 pub mod zonal;

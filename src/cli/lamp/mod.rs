@@ -5,6 +5,7 @@ mod compare;
 mod convert;
 mod files;
 mod load;
+mod spectral;
 
 use clap::Subcommand;
 
@@ -25,6 +26,8 @@ pub(super) enum LampCommand {
     Cu(FilesArgs),
     /// Two files side by side: flux, peak, beam, shape, and whether one is the other turned; exit code 1 beyond --tolerance.
     Compare(compare::CompareArgs),
+    /// The lamp with a spectrum: watts, photons, melanopic and hazard-weighted figures; colour over angle of angular spectra.
+    Spectral(spectral::SpectralArgs),
     /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
     Convert(convert::ConvertArgs),
 }
@@ -40,6 +43,7 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         }
         LampCommand::Check(a) => check::check(&a, talk),
         LampCommand::Compare(a) => compare::compare(&a, talk),
+        LampCommand::Spectral(a) => spectral::spectral(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
     }
 }
