@@ -1,8 +1,8 @@
 //! Drawings are whole files with the right content, whatever the numbers.
 
 use photopic::plot::{
-    ChromaticityPanel, ColourVectorPanel, Curve, Diagram, Error, Format, LocusPoint, MarkedPoint, Panel, PlanckPoint,
-    SIDES, SpectrumPanel, Weighting, draw,
+    ChromaticityPanel, ColourAnglePanel, ColourPlane, ColourPoint, ColourVectorPanel, Curve, Diagram, Error, Format,
+    LocusPoint, MarkedPoint, Panel, PlanckPoint, SIDES, SpectrumPanel, Weighting, draw,
 };
 
 /// Wavelength, x and y of the spectral locus of CIE 1931, enough for a picture.
@@ -329,4 +329,35 @@ fn many_panels_are_laid_out() {
     let text = svg(&panels);
     assert_eq!(labels(&text).iter().filter(|l| *l == "hue by hue").count(), 3);
     assert_eq!(png(&panels, Some((600, 1600))).dimensions(), (600, 1600));
+}
+
+#[test]
+fn colour_over_angle_is_drawn_whatever_the_numbers() {
+    let point = |angle_deg: f64, kelvin: f64, counted: bool| ColourPoint {
+        angle_deg,
+        cct_k: Some(kelvin),
+        delta_uv_prime: kelvin * 1e-6,
+        srgb: [255, 180, 90],
+        counted,
+    };
+    let plane = |points: Vec<ColourPoint>| ColourPlane { name: "C<90>".into(), points };
+    let usual = plane((0..19).map(|i| point(5.0 * f64::from(i), 2700.0 + 10.0 * f64::from(i), i < 15)).collect());
+    let panel = ColourAnglePanel { title: "a lamp & its colour".into(), planes: vec![usual], figures: vec![] };
+    for planes in [
+        panel.planes.clone(),
+        vec![],
+        vec![plane(vec![])],
+        vec![plane(vec![point(30.0, 4000.0, true)])],
+        vec![plane(vec![point(f64::NAN, f64::INFINITY, true), point(10.0, f64::NAN, false)]); 9],
+    ] {
+        for format in [Format::Svg, Format::Png] {
+            let bytes = draw(&[ColourAnglePanel { planes: planes.clone(), ..panel.clone() }.into()], None, format);
+            let bytes = bytes.expect("drawn");
+            if format == Format::Svg {
+                let text = String::from_utf8(bytes).expect("UTF-8");
+                assert!(roxmltree::Document::parse(&text).is_ok() && !text.contains("NaN"), "{planes:?}");
+                assert!(text.contains("a lamp &amp; its colour") && text.contains("CCT [K]"));
+            }
+        }
+    }
 }

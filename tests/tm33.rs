@@ -337,6 +337,7 @@ fn sample() -> Luminaire {
         opening: Some(round(0.3, 0.0)),
         housing: Some(round(0.4, 0.1)),
         spectrum: Some(spectrum.expect("a spectrum")),
+        angular_spectra: None,
         keywords: vec![
             ("TESTLAB".into(), "lab".into()),
             ("TEST".into(), "R 1".into()),

@@ -156,6 +156,28 @@ impl Distribution {
         Self { values: self.values.iter().map(|v| v * factor).collect(), ..self.clone() }
     }
 
+    /// The same table with other values, in the order of [`Distribution::values`].
+    ///
+    /// # Errors
+    /// [`Error::Count`], [`Error::Value`].
+    pub fn with_values(&self, values: Vec<f64>) -> Result<Self, Error> {
+        if values.len() != self.values.len() {
+            return Err(Error::Count { found: values.len(), expected: self.values.len() });
+        }
+        match values.iter().find(|v| !v.is_finite()) {
+            Some(found) => Err(Error::Value { found: *found }),
+            None => Ok(Self { values, ..self.clone() }),
+        }
+    }
+
+    /// Whether two tables have the same system, symmetry and angles, and so the same directions in the same order.
+    #[must_use]
+    pub fn same_angles(&self, other: &Self) -> bool {
+        (self.system, self.symmetry) == (other.system, other.symmetry)
+            && self.horizontal_deg == other.horizontal_deg
+            && self.vertical_deg == other.vertical_deg
+    }
+
     /// The largest value and its native angles (horizontal, vertical), degrees; the first of several equal ones.
     #[must_use]
     pub fn peak(&self) -> (f64, f64, f64) {

@@ -65,16 +65,28 @@ impl Distribution {
         .collect()
     }
 
-    /// ∫ I dω over all directions, exactly for the bilinear intensity: lm for cd, W for W/sr.
-    #[must_use]
-    pub fn total_flux(&self) -> f64 {
-        let across = self.plane_weights();
-        let along = match self.system() {
+    /// Weights of the vertical angles, exact for the bilinear intensity.
+    fn row_weights(&self) -> Vec<f64> {
+        match self.system() {
             System::TypeC => sine_weights(self.vertical_deg()),
             System::TypeA => cosine_weights(self.vertical_deg()),
             System::TypeB => even_weights(self.vertical_deg()),
-        };
+        }
+    }
+
+    /// ∫ I dω over all directions, exactly for the bilinear intensity: lm for cd, W for W/sr.
+    #[must_use]
+    pub fn total_flux(&self) -> f64 {
+        let (across, along) = (self.plane_weights(), self.row_weights());
         across.iter().enumerate().map(|(i, w)| w * dot(self.plane(i), &along)).sum()
+    }
+
+    /// The solid angle that each tabulated value stands for, sr, symmetric copies counted, in the order of
+    /// [`Distribution::values`]: the sum of solid angle times value is [`Distribution::total_flux`].
+    #[must_use]
+    pub fn solid_angles_sr(&self) -> Vec<f64> {
+        let along = self.row_weights();
+        self.plane_weights().iter().flat_map(|plane| along.iter().map(move |row| plane * row)).collect()
     }
 
     /// The flux by the zonal-constant rule of the trade's tools on the native intervals: per zone, the mean of the intensities at

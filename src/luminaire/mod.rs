@@ -1,7 +1,10 @@
 //! Luminaires: an intensity distribution with the facts that belong to it.
 
+mod angular;
 pub mod beam;
 pub mod bug;
+pub mod colour;
+pub mod compare;
 pub mod cone;
 pub mod cu;
 pub mod distribution;
@@ -13,11 +16,14 @@ pub mod luminance;
 mod model;
 pub mod nema;
 mod room;
+pub mod shape;
 pub mod spacing;
+pub mod spectral;
 pub mod ugr;
 mod unavailable;
 pub mod zonal;
 
+pub use angular::AngularSpectra;
 pub use distribution::{Distribution, Symmetry, System};
 pub use model::{Body, Kind, LampSet, Luminaire, Shape};
 pub use unavailable::Unavailable;

@@ -1,5 +1,6 @@
 //! One model of a luminaire, to which every file format is a bridge.
 
+use super::angular::AngularSpectra;
 use super::distribution::Distribution;
 use crate::spectrum::Spectrum;
 
@@ -108,6 +109,8 @@ pub struct Luminaire {
     pub housing: Option<Body>,
     /// Spectral distribution, relative or absolute, where the file has one.
     pub spectrum: Option<Spectrum>,
+    /// Spectral intensity by direction, W/(sr·nm), where the file has one.
+    pub angular_spectra: Option<AngularSpectra>,
     /// Every other labelled fact of the file, in order: what a conversion may carry along.
     pub keywords: Vec<(String, String)>,
 }

@@ -31,6 +31,7 @@ mod axis;
 mod background;
 mod chromaticity;
 mod clip;
+pub mod colour_angle;
 mod colour_vector;
 pub mod conversion;
 mod font;
@@ -45,6 +46,7 @@ mod spectrum_curves;
 mod svg;
 
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
+pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
 pub use colour_vector::ColourVectorPanel;
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
 
@@ -68,6 +70,8 @@ pub enum Panel {
     Chromaticity(ChromaticityPanel),
     /// A colour vector graphic after ANSI/IES TM-30.
     ColourVector(Box<ColourVectorPanel>),
+    /// Colour temperature and Δu′v′ over angle.
+    ColourAngle(ColourAnglePanel),
 }
 
 impl From<SpectrumPanel> for Panel {
@@ -85,6 +89,12 @@ impl From<ChromaticityPanel> for Panel {
 impl From<ColourVectorPanel> for Panel {
     fn from(panel: ColourVectorPanel) -> Self {
         Self::ColourVector(Box::new(panel))
+    }
+}
+
+impl From<ColourAnglePanel> for Panel {
+    fn from(panel: ColourAnglePanel) -> Self {
+        Self::ColourAngle(panel)
     }
 }
 

@@ -233,7 +233,7 @@ fn bin(b: &Bin) -> Value {
     })
 }
 
-/// The equivalent daylight quantity has a name where the standard gives it one: EDI for irradiance, EDL for radiance.
+/// The equivalent daylight quantity has a short name where the standard gives it one: EDI for irradiance, EDL for radiance.
 fn alpha_opic(c: &Conversion) -> Value {
     let mut out = Map::new();
     for a in &c.alpha_opic {
@@ -244,6 +244,8 @@ fn alpha_opic(c: &Conversion) -> Value {
             let (radiometric, equivalent) = match f.quantity {
                 Quantity::Irradiance => ("irradiance_w_per_m2", "edi_lx"),
                 Quantity::Radiance => ("radiance_w_per_m2_sr", "edl_cd_per_m2"),
+                Quantity::Flux => ("flux_w", "equivalent_daylight_flux_lm"),
+                Quantity::Intensity => ("intensity_w_per_sr", "equivalent_daylight_intensity_cd"),
                 _ => continue,
             };
             one.insert(equivalent.into(), (f.factor * a.equivalent_daylight).into());

@@ -62,6 +62,7 @@ pub fn lamp(distribution: Distribution) -> Luminaire {
         opening: Some(Body { shape: Shape::Rectangle, length_m: 0.6, width_m: 0.2, height_m: 0.0 }),
         housing: None,
         spectrum: None,
+        angular_spectra: None,
         keywords: Vec::new(),
     }
 }

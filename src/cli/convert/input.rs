@@ -32,7 +32,7 @@ pub(super) struct Item {
 }
 
 /// Why an input was not read, ready to print.
-pub(super) struct Refused {
+pub(in crate::cli) struct Refused {
     pub message: String,
     pub finding: Box<Finding>,
 }
@@ -134,6 +134,41 @@ pub(super) fn open(
         items.push(Item { measured: resolved.value, printed: entry.printed, defined: false });
     }
     Ok(Loaded::Spectra(items, checksum.input(path), findings))
+}
+
+/// The one spectrum of an input, and what there is to say of it.
+pub(in crate::cli) struct Single {
+    pub measured: Measured,
+    pub input: Input,
+    pub findings: Vec<Finding>,
+}
+
+/// Opens an input that holds one spectrum, or the one of a name.
+pub(in crate::cli) fn single(path: &str, select: Option<&str>, c2: SecondRadiation) -> Result<Single, Refused> {
+    let said = Said { quantity: None, unit: None };
+    let (items, input, mut findings) = match open(path, &ReadOptions::default(), said, c2, &ProgressBar::hidden())? {
+        Loaded::Spectra(items, input, findings) => (items, input, findings),
+        Loaded::Stream(..) => {
+            let message = "a table with one spectrum per row; expected one spectrum, or spectra as columns";
+            return Err(Refused::plain(path, message));
+        }
+    };
+    for finding in &mut findings {
+        finding.location.path = Some(path.to_owned());
+    }
+    let names: Vec<String> = items.iter().map(|i| i.measured.name.clone()).collect();
+    let wanted = |item: &Item| select.is_none_or(|n| n.to_lowercase() == item.measured.name.to_lowercase());
+    let mut chosen = items.into_iter().filter(wanted);
+    match (chosen.next(), chosen.next()) {
+        (Some(item), None) => Ok(Single { measured: item.measured, input, findings }),
+        _ => {
+            let some: Vec<&str> = names.iter().take(12).map(String::as_str).collect();
+            let more = if names.len() > some.len() { ", …" } else { "" };
+            let message =
+                format!("{} spectra; expected the name of one with --select: {}{more}", names.len(), some.join(", "));
+            Err(Refused::plain(path, &message))
+        }
+    }
 }
 
 /// The operating system's words without its number.

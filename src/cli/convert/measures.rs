@@ -32,7 +32,7 @@ fn metres(unit: &str) -> Option<f64> {
 }
 
 /// A length in m.
-pub(super) fn length(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn length(text: &str) -> Result<f64, String> {
     measure(text, "length", "2m, 30cm or 10ft", metres)
 }
 

@@ -26,6 +26,9 @@ mod picture;
 mod stream;
 
 pub(super) use args::ConvertArgs;
+pub(super) use input::{Single, single};
+pub(super) use measures::length;
+pub(super) use picture::format_of;
 
 /// Inputs opened and converted at a time.
 const INPUTS_AT_ONCE: usize = 64;

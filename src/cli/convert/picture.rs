@@ -20,7 +20,7 @@ pub(super) struct Kept {
 }
 
 /// The picture format that a file name asks for.
-pub(super) fn format_of(path: &Path) -> Result<Format, Failure> {
+pub(in crate::cli) fn format_of(path: &Path) -> Result<Format, Failure> {
     match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
         Some("svg") => Ok(Format::Svg),
         Some("png") => Ok(Format::Png),

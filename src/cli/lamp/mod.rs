@@ -1,8 +1,10 @@
 //! `lamp`: goniometric lamp data checked, analysed and converted.
 
+mod compare;
 mod convert;
 mod files;
 mod load;
+mod spectral;
 
 use clap::Subcommand;
 use serde_json::Map;
@@ -28,6 +30,10 @@ pub(super) enum LampCommand {
     Ugr(FilesArgs),
     /// Zonal-cavity coefficients of utilisation, per cent: room cavity ratios 0 to 10, floor cavity 20 %.
     Cu(FilesArgs),
+    /// Two files side by side: flux, peak, beam, shape, and whether one is the other turned; exit code 1 beyond --tolerance.
+    Compare(compare::CompareArgs),
+    /// The lamp with a spectrum: watts, photons, melanopic and hazard-weighted figures; colour over angle of angular spectra.
+    Spectral(spectral::SpectralArgs),
     /// Other formats: LM-63, EULUMDAT, TM-33, CSV, light sources for Radiance, pbrt and Mitsuba, a picture.
     Convert(convert::ConvertArgs),
 }
@@ -78,6 +84,8 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
             };
             files(&a, talk, &verb)
         }
+        LampCommand::Compare(a) => compare::compare(&a, talk),
+        LampCommand::Spectral(a) => spectral::spectral(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
     }
 }

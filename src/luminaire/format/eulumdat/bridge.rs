@@ -70,6 +70,7 @@ impl Eulumdat {
             opening: self.opening(),
             housing: body(self.length_mm, self.width_mm, self.height_mm),
             spectrum: None,
+            angular_spectra: None,
             keywords: self.keywords(),
         };
         findings.extend(plausible::check(&luminaire));

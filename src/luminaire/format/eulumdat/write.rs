@@ -235,6 +235,10 @@ impl Writer {
             let message = "the spectral distribution is not carried: EULUMDAT has no place for it";
             self.findings.push(Finding::warning("L290", message));
         }
+        if luminaire.angular_spectra.is_some() {
+            let message = "the angular spectra are not carried: EULUMDAT has no place for them";
+            self.findings.push(Finding::warning("L290", message).hint("TM-33 can carry them"));
+        }
         let carried = [
             keyword::REPORT,
             keyword::FILE,

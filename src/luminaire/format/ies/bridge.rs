@@ -48,6 +48,7 @@ impl RawIes {
             opening,
             housing: None,
             spectrum: None,
+            angular_spectra: None,
             keywords: facts.keywords,
         };
         findings.extend(plausible::check(&value));

@@ -185,4 +185,7 @@ fn not_carried(luminaire: &Luminaire, findings: &mut Vec<Finding>) {
     if luminaire.spectrum.is_some() {
         findings.push(Finding::warning("L040", "LM-63 cannot carry the spectrum").hint("TM-33 can"));
     }
+    if luminaire.angular_spectra.is_some() {
+        findings.push(Finding::warning("L040", "LM-63 cannot carry the angular spectra").hint("TM-33 can"));
+    }
 }

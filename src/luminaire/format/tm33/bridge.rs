@@ -4,8 +4,8 @@ use super::super::error::{Error, ErrorKind};
 use super::super::plausible;
 use super::{Emitter, IntensityTable, Tm33, combine, planes};
 use crate::finding::{Checked, Finding, Location};
-use crate::luminaire::{Distribution, Kind, LampSet, Luminaire};
-use crate::spectrum::{Grid, Spectrum};
+use crate::luminaire::{AngularSpectra, Distribution, Kind, LampSet, Luminaire};
+use crate::spectrum::Spectrum;
 
 /// More emitters than this are a negative number that went through 32 bits, or nonsense.
 const MOST_EMITTERS: f64 = 1e6;
@@ -50,6 +50,7 @@ impl Tm33 {
         let absolute = stated.unwrap_or(!rated);
         let watts: f64 = self.emitters.iter().filter_map(|e| e.input_power_w).sum();
         let scale = self.unit(&mut findings);
+        let angular_spectra = self.angular_spectra(&mut findings)?;
         let text = |name: &str| self.header(name).unwrap_or_default().to_owned();
         let luminaire = Luminaire {
             name: text("Description"),
@@ -65,7 +66,8 @@ impl Tm33 {
             declared_downward_fraction: None,
             opening: self.opening(scale),
             housing: self.housing(scale),
-            spectrum: self.spectrum(&mut findings),
+            spectrum: self.spectrum(angular_spectra.as_ref(), &mut findings),
+            angular_spectra,
             keywords: self.keywords(),
         };
         self.compare(&luminaire, &mut findings);
@@ -122,43 +124,28 @@ impl Tm33 {
     }
 
     /// The spectrum of all emitters, if there is one or they can be added up; else the sum of the angular spectra.
-    fn spectrum(&self, findings: &mut Vec<Finding>) -> Option<Spectrum> {
+    fn spectrum(&self, angular: Option<&AngularSpectra>, findings: &mut Vec<Finding>) -> Option<Spectrum> {
         let spectra: Vec<_> = self.emitters.iter().flat_map(|e| &e.spectra).collect();
-        if let [only] = spectra[..]
-            && self.emitters.len() == 1
-        {
-            return Some(only.spectrum.clone());
+        let Some((first, rest)) = spectra.split_first() else { return angular.and_then(|a| a.power().ok()) };
+        let first = &first.spectrum;
+        if rest.is_empty() && self.emitters.len() == 1 {
+            return Some(first.clone());
         }
-        let parts: Vec<Spectrum> = if spectra.is_empty() {
-            self.emitters.iter().filter_map(|e| e.angular_spectral.as_ref()).filter_map(|s| self.power(s)).collect()
-        } else {
-            spectra.iter().map(|s| s.spectrum.clone()).collect()
-        };
         let absolute = spectra.iter().all(|s| s.normalized == Some(false));
-        let first = parts.first()?;
-        if parts.len() > 1 && !(absolute && parts.iter().all(|p| p.wavelengths_nm() == first.wavelengths_nm())) {
+        let alike = rest.iter().all(|s| s.spectrum.wavelengths_nm() == first.wavelengths_nm());
+        if !(rest.is_empty() || absolute && alike) {
             let message = format!(
                 "{} spectra that are relative or of different wavelengths cannot be added up; none was taken",
-                parts.len()
+                spectra.len()
             );
             findings.push(Finding::warning("L313", message));
             return None;
         }
         let mut values = vec![0.0; first.values().len()];
-        for part in &parts {
-            values.iter_mut().zip(part.values()).for_each(|(sum, v)| *sum += v);
+        for part in &spectra {
+            values.iter_mut().zip(part.spectrum.values()).for_each(|(sum, v)| *sum += v);
         }
         Spectrum::new(first.grid().clone(), values, first.sampling()).ok()
-    }
-
-    /// Angular spectra integrated over the sphere: W/nm.
-    fn power(&self, spectral: &super::AngularSpectral) -> Option<Spectrum> {
-        let mut values = Vec::new();
-        for index in 0..spectral.wavelengths_nm.len() {
-            let table = spectral.at_wavelength(index)?;
-            values.push(planes::distribution(&table, self.goniometer, &mut Vec::new()).ok()?.total_flux());
-        }
-        Grid::new(spectral.wavelengths_nm.clone()).and_then(|grid| Spectrum::density(grid, values)).ok()
     }
 
     fn keywords(&self) -> Vec<(String, String)> {

@@ -15,13 +15,8 @@ pub(super) fn sum(parts: &[Distribution]) -> Result<Option<Distribution>, Error>
     if rest.is_empty() {
         return Ok(Some(first.clone()));
     }
-    let alike = |d: &Distribution| {
-        (d.system(), d.symmetry()) == (first.system(), first.symmetry())
-            && d.horizontal_deg() == first.horizontal_deg()
-            && d.vertical_deg() == first.vertical_deg()
-    };
     let (system, symmetry) = (first.system(), first.symmetry());
-    let made = if rest.iter().all(alike) {
+    let made = if rest.iter().all(|d| first.same_angles(d)) {
         let mut values = first.values().to_vec();
         for part in rest {
             values.iter_mut().zip(part.values()).for_each(|(a, b)| *a += b);

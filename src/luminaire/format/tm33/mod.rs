@@ -10,9 +10,9 @@
 //! - Dimensions are metres. Length lies along C90–C270 (it is the extent of the faces towards C0 and C180), width along C0–C180.
 //! - Planes: `Symm_Full` one, `Symm_Quad` 0–90°, `Symm_Bi_0` 0–180°, `Symm_Bi_90` 90–270°, `Symm_None` the full turn. TM-33-18
 //!   has no `Symm`: the range of the planes tells, as in LM-63.
-//! - The angular-spectral table stays in [`Emitter::angular_spectral`], one spectrum per direction; the model gets its
-//!   luminous sum (683.002 lm/W, V(λ) of CIE 018:2019, straight lines between the samples) and, integrated over the
-//!   sphere, its spectrum.
+//! - The angular-spectral table, one spectrum per direction, comes into the model as it is (the emitters' added up). Where the
+//!   file has no other intensity, the model's is its luminous sum (683.002 lm/W, V(λ) of CIE 018:2019, straight lines
+//!   between the samples); where it has no other spectrum, the model's is the sum over the sphere.
 //!
 //! # Findings
 //!
@@ -33,10 +33,12 @@
 //! | L313 | warning | spectra that cannot be added up (relative, or of different wavelengths); none taken |
 //! | L314 | warning | the flux of the angular spectra is not that of the other intensities (5 %) |
 //! | L315 | info | elements that the schema requires are missing |
+//! | L316 | warning | angular spectra of some emitters only, or of different wavelengths; none taken |
 //! | L390 | info, warning | writing: something that TM-33-23 cannot carry, or that had to be filled in |
 //!
 //! Findings of every format (L101 and L110 to L116): see [`plausible`](super::plausible).
 
+mod angular;
 mod bodies;
 mod bridge;
 mod combine;

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use super::super::error::Error;
 use super::lexical::{date, digits, escaped, leading, rounded};
 use crate::finding::{Checked, Finding};
-use crate::luminaire::{Body, Kind, LampSet, Luminaire, Shape, Symmetry, System};
+use crate::luminaire::{AngularSpectra, Body, Distribution, Kind, LampSet, Luminaire, Shape, Symmetry, System};
+use crate::spectrum::Sampling;
 
 /// A TM-33-23 document (`<IESTM33-22>`, version 1.1), UTF-8, elements in the order of the schema. All intensities are absolute
 /// values of the luminaire in one emitter; what the schema requires and the model does not know is filled in and said
@@ -182,7 +183,7 @@ impl Writer {
             _ => self.lost_text("the colour rendering of the lamps", &lamps.rendering),
         }
         self.intensity(luminaire);
-        self.spectrum(luminaire);
+        self.spectral_data(luminaire);
         if let Some(opening) = luminaire.opening {
             self.areas(luminaire, opening);
         }
@@ -213,20 +214,8 @@ impl Writer {
         }
         self.open(intensity);
         self.leaf(absolute, if luminaire.absolute { "true" } else { "false" });
-        self.leaf(
-            "Symm",
-            match (table.system(), table.symmetry()) {
-                (_, Symmetry::Rotational) => "Symm_Full",
-                (_, Symmetry::Quadrant) => "Symm_Quad",
-                (_, Symmetry::BilateralC0) => "Symm_Bi_0",
-                (_, Symmetry::BilateralC90) => "Symm_Bi_90",
-                (_, Symmetry::None) => "Symm_None",
-            },
-        );
+        self.directions(table);
         let (horizontal, vertical) = (table.horizontal_deg(), table.vertical_deg());
-        self.leaf("NumberMeasured", &(horizontal.len() * vertical.len()).to_string());
-        self.leaf("NumberHorz", &horizontal.len().to_string());
-        self.leaf("NumberVert", &vertical.len().to_string());
         let rows: Vec<String> = vertical.iter().map(|v| digits(*v)).collect();
         for (i, h) in horizontal.iter().enumerate() {
             let h = digits(*h);
@@ -240,17 +229,64 @@ impl Writer {
         self.close(data);
     }
 
-    fn spectrum(&mut self, luminaire: &Luminaire) {
-        let Some(spectrum) = &luminaire.spectrum else { return };
-        self.open("SpectralData");
-        self.open("EmitterSpectral");
-        self.leaf("NumberWavelength", &spectrum.values().len().to_string());
-        for (nm, value) in spectrum.wavelengths_nm().iter().zip(spectrum.values()) {
-            self.indent();
-            let _ = writeln!(self.text, "<PwrData w=\"{}\">{}</PwrData>", digits(*nm), digits(*value));
+    /// Symmetry and numbers of directions of a table.
+    fn directions(&mut self, table: &Distribution) {
+        self.leaf(
+            "Symm",
+            match table.symmetry() {
+                Symmetry::Rotational => "Symm_Full",
+                Symmetry::Quadrant => "Symm_Quad",
+                Symmetry::BilateralC0 => "Symm_Bi_0",
+                Symmetry::BilateralC90 => "Symm_Bi_90",
+                Symmetry::None => "Symm_None",
+            },
+        );
+        let (horizontal, vertical) = (table.horizontal_deg().len(), table.vertical_deg().len());
+        self.leaf("NumberMeasured", &(horizontal * vertical).to_string());
+        self.leaf("NumberHorz", &horizontal.to_string());
+        self.leaf("NumberVert", &vertical.to_string());
+    }
+
+    fn spectral_data(&mut self, luminaire: &Luminaire) {
+        let spectrum = luminaire.spectrum.as_ref().filter(|s| s.sampling() == Sampling::Density);
+        if luminaire.spectrum.is_some() && spectrum.is_none() {
+            let message = "the spectrum consists of lines, which have no W/nm, and was not carried";
+            self.findings.push(Finding::warning("L390", message));
         }
-        self.close("EmitterSpectral");
+        if spectrum.is_none() && luminaire.angular_spectra.is_none() {
+            return;
+        }
+        self.open("SpectralData");
+        if let Some(spectrum) = spectrum {
+            self.open("EmitterSpectral");
+            self.leaf("NumberWavelength", &spectrum.values().len().to_string());
+            for (nm, value) in spectrum.wavelengths_nm().iter().zip(spectrum.values()) {
+                self.indent();
+                let _ = writeln!(self.text, "<PwrData w=\"{}\">{}</PwrData>", digits(*nm), digits(*value));
+            }
+            self.close("EmitterSpectral");
+        }
+        if let Some(spectra) = &luminaire.angular_spectra {
+            self.angular_spectra(spectra, luminaire.absolute);
+        }
         self.close("SpectralData");
+    }
+
+    fn angular_spectra(&mut self, spectra: &AngularSpectra, absolute: bool) {
+        self.open("AngularSpectral");
+        self.leaf("Absolute", if absolute { "true" } else { "false" });
+        self.directions(spectra.frame());
+        let wavelengths: Vec<String> = spectra.grid().wavelengths_nm().iter().map(|nm| digits(*nm)).collect();
+        self.leaf("NumberWavelength", &wavelengths.len().to_string());
+        for direction in 0..spectra.directions() {
+            let (h, v) = spectra.angles_deg(direction);
+            let (h, v) = (digits(h), digits(v));
+            for (nm, value) in wavelengths.iter().zip(spectra.values(direction)) {
+                self.indent();
+                let _ = writeln!(self.text, "<IntData h=\"{h}\" v=\"{v}\" w=\"{nm}\">{}</IntData>", digits(*value));
+            }
+        }
+        self.close("AngularSpectral");
     }
 
     fn areas(&mut self, luminaire: &Luminaire, body: Body) {
