@@ -1,4 +1,4 @@
-"""Races photopic against numpy, colour-science and the Rust crate colorimetry, in one run and interleaved.
+"""Races photopic against numpy, colour-science and the Rust crates colorimetry and eulumdat, in one run and interleaved.
 
     PY=$(scripts/venv.sh) && "$PY" scripts/bench_peers.py [--rounds 7] [--json FILE] [--binary PATH] [--skip-process]
 
@@ -43,6 +43,8 @@ AT_LEAST = 0.1
 MEAN = {"xyz": (K_M * 81.34364396, 1e-5), "cct": (4050.84364, 1.0), "cri": (73.4162, 0.2), "tm30": (75.6697, 0.02)}
 # The issue's targets for one core: spectra, seconds.
 TARGET = {"cct": (10_000, 13e-3), "cri": (1000, 36e-3), "tm30": (100, 23e-3)}
+# Readers of lamps: photopic and the crate eulumdat on the same text in memory.
+LAMPS = {"lm63-plain": "LM-63, 181 × 361 angles, ordinary numbers", "lm63-long": "the same with 17-digit numbers"}
 TITLE = {
     "xyz": "100 000 spectra to X, Y, Z, luminance",
     "cct": "10 000 CCTs of XYZ",
@@ -113,13 +115,35 @@ def python_peers():
     }
 
 
-def rust_peers():
-    """The same of the Rust libraries: a process each time, which warms up by itself."""
+def peers_binary():
+    """Builds benches/peers."""
     target = ROOT / "target" / "peers"
     manifest = ROOT / "benches" / "peers" / "Cargo.toml"
     build = ["cargo", "build", "--quiet", "--release", "--manifest-path", manifest, "--target-dir", target]
     subprocess.run(build, check=True)
-    binary = target / "release" / "peers"
+    return target / "release" / "peers"
+
+
+def lamps(binary, rounds):
+    """Prints megabytes a second of the readers of lamps, interleaved."""
+    rates = {}
+    for _ in range(rounds):
+        for task in LAMPS:
+            for name in ("photopic", "eulumdat"):
+                done = subprocess.run([binary, name, task], check=True, capture_output=True, text=True)
+                got = json.loads(done.stdout)
+                rates.setdefault(task, {}).setdefault(name, []).append(got["spectra"] / got["seconds"] / 1e6)
+    for task, by_name in rates.items():
+        ours = statistics.median(by_name["photopic"])
+        print(f"\n{LAMPS[task]}, MB/s\n{'':18}{'median':>10} {'slowest':>10} {'fastest':>10} {'ratio':>8}")
+        for name, rate in by_name.items():
+            median, low, high = spread(rate)
+            print(f"{name:18}{median:>10.0f} {low:>10.0f} {high:>10.0f} {ours / median:>8.2f}")
+
+
+def rust_peers():
+    """The same of the Rust libraries: a process each time, which warms up by itself."""
+    binary = peers_binary()
 
     def race(task, implementation):
         done = subprocess.run([binary, implementation, task], check=True, capture_output=True, text=True)
@@ -245,10 +269,15 @@ def main():
     parser.add_argument("--binary", type=Path, default=ROOT / "target" / "release" / "photopic", help="the program")
     parser.add_argument("--skip-process", action="store_true", help="libraries only")
     parser.add_argument("--skip-libraries", action="store_true", help="the whole program only")
+    parser.add_argument("--lamps", action="store_true", help="the readers of lamps only")
     arguments = parser.parse_args()
     print(machine())
+    if arguments.lamps:
+        lamps(peers_binary(), arguments.rounds)
+        return
     times = {}
     if not arguments.skip_libraries:
+        lamps(peers_binary(), arguments.rounds)
         peers = rust_peers() | python_peers()
         for _ in range(arguments.rounds):
             for (task, name), run in peers.items():

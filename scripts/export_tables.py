@@ -876,6 +876,33 @@ def peak(rows: Rows, i: int) -> tuple[int, Decimal]:
     return where[len(where) // 2] if len(where) % 2 else where[(len(where) - 1) // 2], top
 
 
+# Tables over other arguments than the wavelength, transcribed by hand: the file is kept as it is and held to its checksum.
+LOOKUPS = [
+    {
+        "name": "cie-117-position-index",
+        "file": "cie/position_index.csv",
+        "title": "Position index p of glare sources, after Guth",
+        "standard": "CIE 117:1995 Table 4.1",
+        "origin": "the digits of eulumdat-ugr 1.0.2 (PyPI, MIT, (c) 2026 123VincentB), but for T/R 2.7, H/R 0.6: 7.50 there is a misprint of 7.05, as its neighbours show",
+        "checked": "27 factors K of CIE 190:2010 Table 2, which contain p: 25 agree in all five printed decimals, one differs by one in the last, one (x = 1.5 H, y = 4.5 H) stands out from its own neighbours",
+        "licence": "published values, none stated",
+        "date": "2026-11-24",
+        "sha256": "0daf7de3eee732679df975f7a391f0473f9c1911bbebb56c4b1a2e7204e1f481",
+        "rows": "T/R, the distance aside over the distance ahead, 0 to 3 by 0.1",
+        "columns": "H/R, the height over the distance ahead, 0 to 1.9 by 0.1",
+        "note": "Blank where the standard has no value.",
+    },
+]
+
+
+def lookup(entry: dict[str, str]) -> str:
+    """The text of a table kept by hand."""
+    text = (ROOT / "data" / entry["file"]).read_text(encoding="utf-8")
+    if hashlib.sha256(text.encode()).hexdigest() != entry["sha256"]:
+        fail(f"data/{entry['file']} is not what its checksum says")
+    return text
+
+
 def manifest(all_tables: list[Table], texts: dict[str, str]) -> str:
     lines = ["# Made by scripts/export_tables.py; change that, not this file.", ""]
     for t in all_tables:
@@ -911,6 +938,8 @@ def manifest(all_tables: list[Table], texts: dict[str, str]) -> str:
                 fail(f"{t.name}: {s.column}({s.nm}) is {t.rows[s.nm][i]}, {s.source} has {s.value}")
             lines += [f"  {{ nm = {s.nm}.0, column = {quoted(s.column)}, value = {real(Decimal(s.value))}, source = {quoted(s.source)} }},"]
         lines += ["]", ""]
+    for entry in LOOKUPS:
+        lines += ["[[lookup]]", *(f"{key} = {quoted(text)}" for key, text in entry.items()), ""]
     return "\n".join(lines)
 
 
@@ -923,7 +952,7 @@ def build() -> dict[str, str]:
         if found != version:
             sys.exit(f"{package} {found} is installed; {version} is needed (run scripts/venv.sh)")
     all_tables = tables()
-    texts = {t.file: t.csv() for t in all_tables}
+    texts = {t.file: t.csv() for t in all_tables} | {entry["file"]: lookup(entry) for entry in LOOKUPS}
     texts["MANIFEST.toml"] = manifest(all_tables, texts)
     texts.update(spectra(all_tables))
     if FAILURES:

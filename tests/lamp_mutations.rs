@@ -275,3 +275,17 @@ fn no_table_is_silently_dark() {
         assert!(file.findings.iter().any(|f| f.code == "L111"), "{name}: {:?}", file.findings);
     }
 }
+
+#[test]
+fn sets_of_lamps_are_alternatives() {
+    let (_, bytes) = own("valid").into_iter().find(|(name, _)| name.ends_with("cr_cr_lf.ldt")).expect("a file");
+    let text = String::from_utf8(bytes).expect("ASCII").replace("\r\r\n", "\n");
+    // Twice the same set of one lamp of 1000 lm: the luminaire gives more than a set, but less than both.
+    let set = "1\nLED\n1000\n\n\n10\n";
+    let text = text.replace("\n1\n-1\nLED\n1256.637\n\n\n10\n", &format!("\n2\n{set}{set}")).replace("79.57747", "100");
+    let file = open(text.as_bytes(), &ReadOptions::default()).expect("a file");
+    assert!(file.findings.iter().any(|f| f.code == "L113"), "{:?}", file.findings);
+    // 4π · 100 cd of 1000 lm.
+    let ratio = photopic::luminaire::zonal::light_output_ratio(&file.value.luminaire).expect("lamps with a flux");
+    assert!((ratio / (0.4 * std::f64::consts::PI) - 1.0).abs() < 1e-6, "{ratio}");
+}

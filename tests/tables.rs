@@ -48,7 +48,8 @@ fn every_file_is_listed_and_every_listed_file_is_there() {
             }
         }
     }
-    let listed: BTreeSet<String> = tables::all().iter().map(|t| t.info().file.clone()).collect();
+    let mut listed: BTreeSet<String> = tables::all().iter().map(|t| t.info().file.clone()).collect();
+    listed.extend(tables::lookups().iter().map(|t| t.info().file.clone()));
     assert_eq!(found, listed, "files in data/ against data/MANIFEST.toml");
 }
 
@@ -60,6 +61,23 @@ fn embedded_files_are_those_on_disk_and_have_the_checksum_of_the_manifest() {
         assert_eq!(sha256(&bytes), t.info().sha256, "{}: sha256", t.name());
         assert!(!t.csv().contains(['\r', '#', '"', ' ', '\u{feff}']), "{}: plain CSV with line feeds", t.name());
         assert!(t.csv().ends_with('\n'), "{}: ends in a line feed", t.name());
+    }
+}
+
+#[test]
+fn tables_over_other_arguments_are_whole_and_described() {
+    assert!(!tables::lookups().is_empty());
+    for t in tables::lookups() {
+        let i = t.info();
+        let bytes = fs::read(data().join(&i.file)).expect("a listed file");
+        assert_eq!(t.csv().as_bytes(), bytes, "{}: compiled in and on disk", i.name);
+        assert_eq!(sha256(&bytes), i.sha256, "{}: sha256", i.name);
+        for text in [&i.title, &i.standard, &i.origin, &i.checked, &i.licence, &i.rows, &i.columns] {
+            assert!(text.len() > 10, "{}: `{text}`", i.name);
+        }
+        let width = t.csv().lines().next().map_or(0, |header| header.split(',').count());
+        assert!(width > 1 && t.csv().lines().all(|line| line.split(',').count() == width), "{}: a rectangle", i.name);
+        assert!(t.csv().lines().skip(1).flat_map(|l| l.split(',')).all(|c| c.is_empty() || c.parse::<f64>().is_ok()));
     }
 }
 

@@ -23,6 +23,7 @@ const FILES: &[(&str, &str)] = files![
     "cie/illuminants_5nm.csv",
     "cie/illuminants_fl_hp_led.csv",
     "cie/l41.csv",
+    "cie/position_index.csv",
     "cie/s026_alpha_opic.csv",
     "cie/tcs01_14.csv",
     "cie/v10_1964.csv",

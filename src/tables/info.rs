@@ -109,12 +109,46 @@ pub struct Spot {
     pub source: String,
 }
 
+/// What the manifest says about a table over two arguments other than the wavelength.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct LookupInfo {
+    /// Stable name.
+    pub name: String,
+    /// File below `data/`.
+    pub file: String,
+    /// What the table is.
+    pub title: String,
+    /// Standard and number of the table in it.
+    pub standard: String,
+    /// Where these digits were taken from.
+    pub origin: String,
+    /// What they were held against.
+    pub checked: String,
+    /// Terms of the numbers.
+    pub licence: String,
+    /// Date of the transcription, year-month-day.
+    pub date: String,
+    /// SHA-256 of the embedded file, lower-case hexadecimal.
+    pub sha256: String,
+    /// The argument that the rows stand for, in the first column.
+    pub rows: String,
+    /// The argument that the columns stand for, in the header.
+    pub columns: String,
+    /// What a user of the numbers should know.
+    pub note: String,
+}
+
+/// The whole manifest.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Manifest {
+    pub(super) table: Vec<TableInfo>,
+    pub(super) lookup: Vec<LookupInfo>,
+}
+
 /// Reads the manifest.
-pub(super) fn read(toml: &str) -> Result<Vec<TableInfo>, toml::de::Error> {
-    #[derive(Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct Manifest {
-        table: Vec<TableInfo>,
-    }
-    toml::from_str::<Manifest>(toml).map(|manifest| manifest.table)
+pub(super) fn read(toml: &str) -> Result<Manifest, toml::de::Error> {
+    toml::from_str(toml)
 }

@@ -25,7 +25,7 @@ mod info;
 
 use std::sync::OnceLock;
 
-pub use info::{Column, Spot, TableInfo};
+pub use info::{Column, LookupInfo, Spot, TableInfo};
 
 /// Why a table could not be given.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -134,16 +134,50 @@ pub fn get(name: &str) -> Result<&'static Table, Error> {
 pub fn all() -> &'static [Table] {
     static TABLES: OnceLock<Vec<Table>> = OnceLock::new();
     TABLES.get_or_init(|| {
-        let infos = info::read(embedded::MANIFEST).expect("data/MANIFEST.toml is broken");
-        infos
-            .into_iter()
-            .map(|info| {
-                let csv = embedded::file(&info.file)
-                    .unwrap_or_else(|| panic!("data/{} is in the manifest but not embedded", info.file));
-                Table { info, csv, numbers: OnceLock::new() }
-            })
-            .collect()
+        let infos = info::read(embedded::MANIFEST).expect("data/MANIFEST.toml is broken").table;
+        let table = |info: TableInfo| Table { csv: embedded(&info.file), info, numbers: OnceLock::new() };
+        infos.into_iter().map(table).collect()
     })
+}
+
+/// One embedded table over two arguments other than the wavelength.
+#[derive(Debug)]
+pub struct Lookup {
+    info: LookupInfo,
+    csv: &'static str,
+}
+
+impl Lookup {
+    /// Everything the manifest says about the table.
+    #[must_use]
+    pub fn info(&self) -> &LookupInfo {
+        &self.info
+    }
+
+    /// The embedded file as it is: a header row with the arguments of the columns, then one row per argument in the first
+    /// column; a blank cell where the publication has no value.
+    #[must_use]
+    pub fn csv(&self) -> &'static str {
+        self.csv
+    }
+}
+
+/// All tables over other arguments than the wavelength, in the order of the manifest.
+///
+/// # Panics
+///
+/// If the embedded manifest is broken; a test reads it.
+#[must_use]
+pub fn lookups() -> &'static [Lookup] {
+    static LOOKUPS: OnceLock<Vec<Lookup>> = OnceLock::new();
+    LOOKUPS.get_or_init(|| {
+        let infos = info::read(embedded::MANIFEST).expect("data/MANIFEST.toml is broken").lookup;
+        infos.into_iter().map(|info| Lookup { csv: embedded(&info.file), info }).collect()
+    })
+}
+
+fn embedded(file: &str) -> &'static str {
+    embedded::file(file).unwrap_or_else(|| panic!("data/{file} is in the manifest but not embedded"))
 }
 
 /// Splits an embedded file into numbers; its header must be the manifest's columns.

@@ -3,8 +3,9 @@
 //!
 //! Implementations: `photopic`, `photopic-1` (one spectrum at a time), `colorimetry` (the crate), `colorimetry-1nm` (its
 //! resampling to 401 samples done beforehand). Tasks: `xyz`, `cct`, `cri`, `tm30`, and of photopic `cold`: the first
-//! conversion in a process, tables and plans included.
+//! conversion in a process, tables and plans included. `lm63-plain` and `lm63-long` of photopic and `eulumdat`: see `lamps`.
 
+mod lamps;
 #[path = "../../samples/mod.rs"]
 mod samples;
 
@@ -43,6 +44,7 @@ fn main() {
         ("colorimetry-1nm", "cct") => crate_cct(),
         ("colorimetry-1nm", "cri") => crate_cri(),
         ("colorimetry-1nm", "tm30") => crate_tm30(),
+        (implementation, task) if task.starts_with("lm63") => lamps::run(implementation, task),
         _ => panic!("no task `{task}` of `{implementation}`"),
     }
 }

@@ -95,8 +95,13 @@ pub(super) fn not_carried(luminaire: &Luminaire, target: &str, is_light: bool) -
     if !lost.is_empty() {
         findings.push(Finding::info("L501", format!("{target} cannot carry: {}", lost.join(", "))));
     }
-    if luminaire.spectrum.is_some() {
-        let message = format!("{target} was written without the lamp's spectrum");
+    let spectra = match (&luminaire.spectrum, &luminaire.angular_spectra) {
+        (_, Some(_)) => Some("spectra by direction"),
+        (Some(_), None) => Some("spectrum"),
+        (None, None) => None,
+    };
+    if let Some(spectra) = spectra {
+        let message = format!("{target} was written without the lamp's {spectra}");
         findings.push(Finding::warning("L501", message).hint("TM-33 carries it"));
     }
     findings

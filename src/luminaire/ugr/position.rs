@@ -2,20 +2,19 @@
 
 use std::sync::LazyLock;
 
-/// CIE 117:1995, table 4.1: rows T/R, columns H/R, both in steps of 0.1; blank where the standard has none.
-///
-/// The digits are those of eulumdat-ugr 1.0.2 (PyPI, MIT, © 2026 123VincentB), but for T/R 2.7, H/R 0.6: the 7.50 printed there
-/// is shown by its neighbours to be a misprint of 7.05. They were held against a copy of the factors K of CIE 190:2010 table 2,
-/// which contain p: of 27 computed from this table 25 agree in all five printed decimals, one differs by one in the last, and one
-/// (at x = 1.5 H, y = 4.5 H: 0.00292 printed, 0.00287 computed) stands out from its own neighbours.
-const TABLE: &str = include_str!("position_index.csv");
+use crate::tables;
+
+/// CIE 117:1995, table 4.1: rows T/R, columns H/R, both in steps of 0.1; blank where the standard has none. The manifest says where
+/// the digits come from and what they were held against.
+const TABLE: &str = "cie-117-position-index";
 
 /// Step of both arguments.
 const STEP: f64 = 0.1;
 
 static ROWS: LazyLock<Vec<Vec<Option<f64>>>> = LazyLock::new(|| {
     let cells = |line: &str| line.split(',').skip(1).map(|cell| cell.parse().ok()).collect();
-    TABLE.lines().skip(1).map(cells).collect()
+    let table = tables::lookups().iter().find(|table| table.info().name == TABLE).expect("the table is embedded");
+    table.csv().lines().skip(1).map(cells).collect()
 });
 
 /// The position index p of a glare source above the line of sight, after Guth: 1 on it, larger away from it.
