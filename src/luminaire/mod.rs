@@ -4,6 +4,7 @@ pub mod beam;
 pub mod bug;
 pub mod cone;
 pub mod cu;
+pub mod cut;
 pub mod distribution;
 mod flux;
 pub mod format;
