@@ -1,9 +1,10 @@
-//! `lamp`: goniometric lamp data checked, analysed and converted; one file per verb.
+//! `lamp`: goniometric lamp data checked, analysed, converted and drawn; one file per verb.
 
 mod check;
 mod convert;
 mod files;
 mod load;
+mod plot;
 
 use clap::Subcommand;
 
@@ -24,6 +25,8 @@ pub(super) enum LampCommand {
     Cu(FilesArgs),
     /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
     Convert(convert::ConvertArgs),
+    /// Diagrams as .svg or .png: a sheet as in a maker's datasheet, or one diagram; several files together or each for itself.
+    Plot(plot::PlotArgs),
 }
 
 pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
@@ -37,5 +40,6 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         }
         LampCommand::Check(a) => check::check(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
+        LampCommand::Plot(a) => plot::plot(&a, talk),
     }
 }
