@@ -1,6 +1,7 @@
 //! Beam and field angles in the two principal planes, in the three definitions that are in use.
 
-use super::distribution::{Distribution, System};
+use super::cut::Cut;
+use super::distribution::Distribution;
 
 /// Which two directions an angle lies between; `fraction` is ½ for the beam and ⅒ for the field angle.
 ///
@@ -63,92 +64,16 @@ pub fn field_angles(distribution: &Distribution) -> [PlaneAngles; 3] {
 /// that never falls below the fraction ends where its table ends.
 #[must_use]
 pub fn angles(distribution: &Distribution, fraction: f64, definition: Definition) -> PlaneAngles {
-    let along = |first: bool| Slice::of(distribution, first).angle(fraction, definition, distribution.peak().0);
-    PlaneAngles { definition, c0_c180: along(true), c90_c270: along(false) }
-}
-
-/// A cut through the axis: signed angle from it, degrees ascending, and the value there.
-struct Slice {
-    angles: Vec<f64>,
-    values: Vec<f64>,
-}
-
-impl Slice {
-    fn of(distribution: &Distribution, first: bool) -> Self {
-        let angles = match (distribution.system(), first) {
-            // C180 (C270) counts negative; both halves share the value at nadir, which is that of C0 (C90).
-            (System::TypeC, _) => mirrored(distribution.vertical_deg()),
-            (_, true) if distribution.horizontal_deg()[0] >= 0.0 => mirrored(distribution.horizontal_deg()),
-            (_, true) => distribution.horizontal_deg().to_vec(),
-            (_, false) => distribution.vertical_deg().to_vec(),
-        };
-        let at = |a: f64| match (distribution.system(), first) {
-            (System::TypeC, _) => {
-                let c = if first { 0.0 } else { 90.0 } + if a < 0.0 { 180.0 } else { 0.0 };
-                distribution.at(c, a.abs())
-            }
-            (_, true) => distribution.at(a, 0.0),
-            (_, false) => distribution.at(0.0, a),
-        };
-        let values = angles.iter().map(|a| at(*a)).collect();
-        Self { angles, values }
-    }
-
-    fn angle(&self, fraction: f64, definition: Definition, peak: f64) -> Option<f64> {
-        match definition {
-            Definition::Fwhm => {
-                let top = (0..self.values.len()).rev().max_by(|a, b| self.values[*a].total_cmp(&self.values[*b]))?;
-                self.outwards(top, fraction * self.values[top])
-            }
-            Definition::OfNadir => {
-                let axis = self.angles.iter().position(|a| *a == 0.0)?;
-                self.outwards(axis, fraction * self.values[axis])
-            }
-            Definition::Outermost => self.outermost(fraction * peak),
-        }
-    }
-
-    /// Width about an entry up to the first value below the threshold on either side.
-    fn outwards(&self, from: usize, threshold: f64) -> Option<f64> {
-        if threshold <= 0.0 {
-            return None;
-        }
-        let low = (0..from).rev().find(|&i| self.values[i] < threshold);
-        let high = (from + 1..self.values.len()).find(|&i| self.values[i] < threshold);
-        let low = low.map_or(self.angles[0], |i| self.crossing(i, i + 1, threshold));
-        let high = high.map_or(self.angles[self.angles.len() - 1], |i| self.crossing(i, i - 1, threshold));
-        Some(high - low)
-    }
-
-    /// Width between the outermost entries that reach the threshold.
-    fn outermost(&self, threshold: f64) -> Option<f64> {
-        if threshold <= 0.0 {
-            return None;
-        }
-        let first = self.values.iter().position(|v| *v >= threshold)?;
-        let last = self.values.iter().rposition(|v| *v >= threshold)?;
-        let low = if first == 0 { self.angles[0] } else { self.crossing(first - 1, first, threshold) };
-        let end = self.values.len() - 1;
-        let high = if last == end { self.angles[end] } else { self.crossing(last + 1, last, threshold) };
-        Some(high - low)
-    }
-
-    /// Angle between an entry below the threshold and a neighbour that reaches it.
-    fn crossing(&self, below: usize, above: usize, threshold: f64) -> f64 {
-        let t = (threshold - self.values[below]) / (self.values[above] - self.values[below]);
-        self.angles[below] + t * (self.angles[above] - self.angles[below])
-    }
-}
-
-/// Non-negative angles and their negatives, zero once.
-fn mirrored(angles: &[f64]) -> Vec<f64> {
-    let negative = angles.iter().rev().filter(|a| **a > 0.0).map(|a| -a);
-    negative.chain(angles.iter().copied()).collect()
+    let along = |plane_deg: f64| {
+        let limits = Cut::of(distribution, plane_deg).limits(fraction, definition, distribution.peak().0);
+        limits.map(|(low, high)| high - low)
+    };
+    PlaneAngles { definition, c0_c180: along(0.0), c90_c270: along(90.0) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::distribution::Symmetry;
+    use super::super::distribution::{Symmetry, System};
     use super::*;
 
     #[test]

@@ -7,6 +7,7 @@ pub mod colour;
 pub mod compare;
 pub mod cone;
 pub mod cu;
+pub mod cut;
 pub mod distribution;
 pub mod export;
 mod flux;

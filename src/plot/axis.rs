@@ -62,6 +62,13 @@ impl Ticks {
         Self { values: (first..=last).map(|i| i as f64 * step).collect(), decimals: decimals.max(0) as usize }
     }
 
+    /// Whole multiples of a whole `step` from `low` to `high`.
+    #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
+    pub(super) fn multiples(low: f64, high: f64, step: f64) -> Self {
+        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        Self { values: (first..=last).map(|i| i as f64 * step).collect(), decimals: 0 }
+    }
+
     pub(super) fn label(&self, value: f64) -> String {
         number(value, self.decimals)
     }

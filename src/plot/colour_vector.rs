@@ -66,10 +66,10 @@ impl ColourVectorPanel {
         for bin in 0..16 {
             let (s, c) = (TAU * f64::from(bin) / 16.0).sin_cos();
             let ray = |r: f64| (centre.0 + r * scale * c, centre.1 - r * scale * s);
-            sheet.dashed(&[ray(0.08), ray(1.42)], (2.0, 4.0), 0.9, Ink::grey(150));
+            sheet.dashed(&[ray(0.08), ray(1.42)], &[2.0, 4.0], 0.9, Ink::grey(150));
         }
         for (radius, text) in [(0.8, "−20 %"), (1.2, "+20 %")] {
-            sheet.dashed(&ring(centre, radius * scale), (6.0, 4.0), 1.1, Ink::grey(105));
+            sheet.dashed(&ring(centre, radius * scale), &[6.0, 4.0], 1.1, Ink::grey(105));
             let place = (centre.0, centre.1 + radius * scale);
             let label = super::sheet::Text {
                 at: (place.0, place.1 + 0.36 * size),

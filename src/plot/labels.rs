@@ -94,6 +94,28 @@ impl Labels {
         });
         true
     }
+
+    /// Write `text` on a line, on a white plate that breaks it, where no other label is; false if there was no free place.
+    pub(super) fn on_line(&mut self, sheet: &mut Sheet, line: &[Point], text: &str, size: f64, ink: Ink) -> bool {
+        let text = sheet::clean(text);
+        let (w, h) = (font::width(&text, size), 0.95 * size);
+        // The place furthest from the labels that are there.
+        let room = |at: &Point| {
+            let label = around(*at, w, h);
+            if !self.within.holds(&label) || self.boxes.iter().any(|b| b.overlaps(&label.grown(3.0))) {
+                return None;
+            }
+            let apart = |b: &Rect| (at.0 - (b.x0 + b.x1) / 2.0).hypot(at.1 - (b.y0 + b.y1) / 2.0);
+            Some(self.boxes.iter().map(apart).fold(60.0, f64::min))
+        };
+        let best = line.iter().filter_map(|p| room(p).map(|r| (r, *p))).max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, at)) = best else { return false };
+        let label = around(at, w, h);
+        sheet.fill(label.grown(1.5).corners().to_vec(), WHITE.alpha(0.85));
+        self.boxes.push(label);
+        sheet.text((at.0, at.1 + 0.36 * size), &text, size, ink, Align::Middle);
+        true
+    }
 }
 
 fn around((x, y): Point, w: f64, h: f64) -> Rect {

@@ -16,17 +16,38 @@ pub(super) fn default_size(panels: &[Panel]) -> (u32, u32) {
     ((width as u32).min(most), (height as u32).min(most))
 }
 
+/// Width of a picture of several panels.
+const SHEET: f64 = 1200.0;
+
 fn natural(panels: &[Panel]) -> (f64, f64) {
     match panels {
-        [Panel::Spectrum(_)] => (1000.0, 600.0),
         [Panel::ColourAngle(_)] => (1000.0, 720.0),
+        [Panel::Spectrum(_) | Panel::Cartesian(_)] => (1000.0, 600.0),
+        [Panel::Figures(f)] => (1000.0, f.height(1000.0)),
         [_] => (800.0, 800.0),
-        _ => {
-            let spectra = panels.iter().filter(|p| matches!(p, Panel::Spectrum(_))).count();
-            let rows = (panels.len() - spectra).div_ceil(2);
-            (1200.0, 420.0 * spectra as f64 + 480.0 * rows as f64)
+        _ => (SHEET, rows(panels).iter().map(|r| r.height).sum()),
+    }
+}
+
+/// Panels side by side.
+struct Row<'a> {
+    panels: Vec<&'a Panel>,
+    height: f64,
+}
+
+/// Key figures as the head of the sheet, spectra alone, the others in pairs.
+fn rows(panels: &[Panel]) -> Vec<Row<'_>> {
+    let mut out = Vec::new();
+    for panel in panels {
+        if let Panel::Figures(f) = panel {
+            out.push(Row { panels: vec![panel], height: f.height(SHEET) });
         }
     }
+    let spectrum = |p: &&Panel| matches!(p, Panel::Spectrum(_));
+    out.extend(panels.iter().filter(spectrum).map(|p| Row { panels: vec![p], height: 420.0 }));
+    let others: Vec<&Panel> = panels.iter().filter(|p| !spectrum(p) && !matches!(p, Panel::Figures(_))).collect();
+    out.extend(others.chunks(2).map(|pair| Row { panels: pair.to_vec(), height: 480.0 }));
+    out
 }
 
 /// Lay the panels out for a picture of `size` pixels.
@@ -36,21 +57,17 @@ pub(super) fn compose(panels: &[Panel], size: (u32, u32)) -> Sheet {
     let mut zoom = (width / natural_width).min(height / natural_height);
     zoom = zoom.max(SMALLEST).min(width / (TIGHTEST * natural_width)).min(height / (TIGHTEST * natural_height));
     let mut sheet = Sheet::new(width / zoom, height / zoom);
-    let (spectra, others): (Vec<_>, Vec<_>) = panels.iter().partition(|p| matches!(p, Panel::Spectrum(_)));
-    let rows: Vec<Vec<&Panel>> =
-        spectra.into_iter().map(|p| vec![p]).chain(others.chunks(2).map(<[&Panel]>::to_vec)).collect();
-    let heights: Vec<f64> =
-        rows.iter().map(|r| if matches!(r[0], Panel::Spectrum(_)) { 420.0 } else { 480.0 }).collect();
-    let total: f64 = heights.iter().sum();
+    let rows = rows(panels);
+    let total: f64 = rows.iter().map(|r| r.height).sum();
     let mut y = 0.0;
-    for (row, share) in rows.iter().zip(heights) {
-        let bottom = y + sheet.height * share / total;
-        let weights: Vec<f64> =
-            row.iter().map(|p| if matches!(p, Panel::ColourVector(_)) && row.len() > 1 { 0.74 } else { 1.0 }).collect();
-        let sum: f64 = weights.iter().sum();
+    for row in &rows {
+        let bottom = y + sheet.height * row.height / total;
+        let several = row.panels.len() > 1;
+        let weight = |p: &Panel| if several && matches!(p, Panel::ColourVector(_)) { 0.74 } else { 1.0 };
+        let sum: f64 = row.panels.iter().map(|p| weight(p)).sum();
         let mut x = 0.0;
-        for (panel, weight) in row.iter().zip(weights) {
-            let right = x + sheet.width * weight / sum;
+        for panel in &row.panels {
+            let right = x + sheet.width * weight(panel) / sum;
             panel.draw(&mut sheet, Rect::new(x, y, right, bottom));
             x = right;
         }
@@ -72,6 +89,12 @@ impl Panel {
             Self::Chromaticity(p) => &p.title,
             Self::ColourVector(p) => &p.title,
             Self::ColourAngle(p) => &p.title,
+            Self::Polar(p) => &p.title,
+            Self::Cartesian(p) => &p.title,
+            Self::Web(p) => &p.title,
+            Self::Isocandela(p) => &p.title,
+            Self::Cone(p) => &p.title,
+            Self::Figures(p) => &p.title,
         }
     }
 
@@ -81,6 +104,12 @@ impl Panel {
             Self::Chromaticity(p) => p.draw(sheet, area),
             Self::ColourVector(p) => p.draw(sheet, area),
             Self::ColourAngle(p) => p.draw(sheet, area),
+            Self::Polar(p) => p.draw(sheet, area),
+            Self::Cartesian(p) => p.draw(sheet, area),
+            Self::Web(p) => p.draw(sheet, area),
+            Self::Isocandela(p) => p.draw(sheet, area),
+            Self::Cone(p) => p.draw(sheet, area),
+            Self::Figures(p) => p.draw(sheet, area),
         }
     }
 }

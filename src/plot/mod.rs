@@ -1,4 +1,4 @@
-//! Drawings: spectra, chromaticity diagrams and colour vector graphics as SVG or PNG.
+//! Drawings as SVG or PNG: spectra, chromaticity diagrams and colour vector graphics; the diagrams of luminaires.
 //!
 //! Plain numbers in, bytes of a file out. Nothing is computed here that a report would print: key figures, loci,
 //! colours of wavelengths and luminous efficiency all come from the caller, and this module imports no other.
@@ -27,28 +27,43 @@
 //! plotters draws; its charts do not (they round to whole pixels, and know neither a second unit on one
 //! axis, nor equal scales, nor labels that avoid each other).
 
+mod angular;
 mod axis;
 mod background;
+mod cartesian;
 mod chromaticity;
 mod clip;
 pub mod colour_angle;
 mod colour_vector;
+mod cone;
 pub mod conversion;
+mod figures;
 mod font;
 mod horseshoe;
 mod inset;
+mod isocandela;
 mod labels;
 mod layout;
+pub mod luminaire;
 mod png;
+mod polar;
 mod sheet;
 mod spectrum;
 mod spectrum_curves;
 mod svg;
+mod web;
 
+pub use angular::{AngularCurve, MOST_ANGULAR_CURVES};
+pub use cartesian::{CartesianPanel, IntensityLevel};
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
 pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
 pub use colour_vector::ColourVectorPanel;
+pub use cone::{ConePanel, ConeStep};
+pub use figures::FiguresPanel;
+pub use isocandela::{IsocandelaPanel, Isoline, Web};
+pub use polar::PolarPanel;
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
+pub use web::WebPanel;
 
 /// The kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -72,29 +87,45 @@ pub enum Panel {
     ColourVector(Box<ColourVectorPanel>),
     /// Colour temperature and Δu′v′ over angle.
     ColourAngle(ColourAnglePanel),
+    /// Intensity around a luminaire's axis.
+    Polar(PolarPanel),
+    /// Intensity over the angle from a luminaire's axis.
+    Cartesian(CartesianPanel),
+    /// The intensity solid of a luminaire.
+    Web(WebPanel),
+    /// Lines of equal intensity.
+    Isocandela(IsocandelaPanel),
+    /// A beam at distances along its axis.
+    Cone(ConePanel),
+    /// Key figures in columns.
+    Figures(FiguresPanel),
 }
 
-impl From<SpectrumPanel> for Panel {
-    fn from(panel: SpectrumPanel) -> Self {
-        Self::Spectrum(panel)
-    }
+macro_rules! panels {
+    ($($variant:ident: $panel:ty),*) => {$(
+        impl From<$panel> for Panel {
+            fn from(panel: $panel) -> Self {
+                Self::$variant(panel)
+            }
+        }
+    )*};
 }
 
-impl From<ChromaticityPanel> for Panel {
-    fn from(panel: ChromaticityPanel) -> Self {
-        Self::Chromaticity(panel)
-    }
+panels! {
+    Spectrum: SpectrumPanel,
+    Chromaticity: ChromaticityPanel,
+    ColourAngle: ColourAnglePanel,
+    Polar: PolarPanel,
+    Cartesian: CartesianPanel,
+    Web: WebPanel,
+    Isocandela: IsocandelaPanel,
+    Cone: ConePanel,
+    Figures: FiguresPanel
 }
 
 impl From<ColourVectorPanel> for Panel {
     fn from(panel: ColourVectorPanel) -> Self {
         Self::ColourVector(Box::new(panel))
-    }
-}
-
-impl From<ColourAnglePanel> for Panel {
-    fn from(panel: ColourAnglePanel) -> Self {
-        Self::ColourAngle(panel)
     }
 }
 
@@ -128,10 +159,10 @@ pub enum Error {
 pub const SIDES: (u32, u32) = (240, 8192);
 
 /// Draw one panel, or several as one picture: spectra above each other over the full width, the others side by side
-/// below.
+/// below, key figures at the head.
 ///
-/// `size` is width and height in pixels; without it a spectrum gets 1000 × 600, another single panel 800 × 800, and
-/// spectrum, chromaticity diagram and colour vector graphic together 1200 × 900. Larger sizes enlarge the drawing.
+/// `size` is width and height in pixels; without it a spectrum or a Cartesian diagram gets 1000 × 600, another single panel
+/// 800 × 800, and several panels 1200 pixels in width. Larger sizes enlarge the drawing.
 ///
 /// # Errors
 ///

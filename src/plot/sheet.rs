@@ -161,8 +161,8 @@ impl Sheet {
         self.stroke(vec![a, b], width, ink);
     }
 
-    /// A dashed line; `pattern` is the length of dash and gap.
-    pub(super) fn dashed(&mut self, points: &[Point], pattern: (f64, f64), width: f64, ink: Ink) {
+    /// A dashed line; `pattern` is the lengths of dash and gap in turn.
+    pub(super) fn dashed(&mut self, points: &[Point], pattern: &[f64], width: f64, ink: Ink) {
         for dash in dashes(points, pattern) {
             self.stroke(dash, width, ink);
         }
@@ -212,10 +212,11 @@ pub(super) fn clean(text: &str) -> String {
     spaced.split(' ').filter(|w| !w.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
-fn dashes(points: &[Point], (dash, gap): (f64, f64)) -> Vec<Vec<Point>> {
+fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
     let mut out = Vec::new();
     let mut current: Vec<Point> = points.first().copied().into_iter().collect();
-    let (mut drawing, mut left) = (true, dash);
+    let mut lengths = pattern.iter().copied().cycle();
+    let (mut drawing, mut left) = (true, lengths.next().unwrap_or(f64::INFINITY));
     for pair in points.windows(2) {
         let (mut a, b) = (pair[0], pair[1]);
         loop {
@@ -233,7 +234,7 @@ fn dashes(points: &[Point], (dash, gap): (f64, f64)) -> Vec<Vec<Point>> {
             }
             current = vec![a];
             drawing = !drawing;
-            left = if drawing { dash } else { gap };
+            left = lengths.next().unwrap_or(f64::INFINITY);
         }
     }
     // A last dash of no length would be a speck.
@@ -250,7 +251,7 @@ mod tests {
 
     #[test]
     fn dashes_cover_their_share_of_the_line() {
-        let parts = dashes(&[(0.0, 0.0), (30.0, 0.0), (30.0, 70.0)], (6.0, 4.0));
+        let parts = dashes(&[(0.0, 0.0), (30.0, 0.0), (30.0, 70.0)], &[6.0, 4.0]);
         let length = |p: &Vec<Point>| p.windows(2).map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1)).sum::<f64>();
         assert_eq!(parts.len(), 10);
         assert!((parts.iter().map(length).sum::<f64>() - 60.0).abs() < 1e-9);

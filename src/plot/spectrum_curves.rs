@@ -21,21 +21,21 @@ const PALETTE: [[u8; 3]; 8] = [
     [196, 138, 0],
     [132, 82, 62],
 ];
-type Dash = Option<(f64, f64)>;
+type Dash = Option<[f64; 2]>;
 
 /// Colour and dashes of the curve at `index` among `count`.
 pub(super) fn style(index: usize, count: usize) -> (Ink, Dash) {
     if count < 2 {
         return (DARK, None);
     }
-    let dash = [None, Some((9.0, 4.0)), Some((3.0, 3.0)), Some((14.0, 3.0))][index / PALETTE.len() % 4];
+    let dash = [None, Some([9.0, 4.0]), Some([3.0, 3.0]), Some([14.0, 3.0])][index / PALETTE.len() % 4];
     (Ink::rgb(PALETTE[index % PALETTE.len()]), dash)
 }
 
 /// A line, dashed or not.
 pub(super) fn trace(sheet: &mut Sheet, points: &[Point], width: f64, ink: Ink, dash: Dash) {
     match dash {
-        Some(pattern) => sheet.dashed(points, pattern, width, ink),
+        Some(pattern) => sheet.dashed(points, &pattern, width, ink),
         None => sheet.stroke(points.to_vec(), width, ink),
     }
 }
@@ -196,7 +196,7 @@ pub(super) fn weighting(sheet: &mut Sheet, w: &Weighting, plot: Rect, x: Scale, 
         sheet.stroke(part.clone(), 3.6, WHITE.alpha(0.75));
     }
     for part in &parts {
-        sheet.dashed(part, (7.0, 4.0), 1.6, WEIGHTING);
+        sheet.dashed(part, &[7.0, 4.0], 1.6, WEIGHTING);
     }
     let name = clean(&w.name);
     let room = plot.width() / 3.0;

@@ -1,9 +1,10 @@
-//! `lamp`: goniometric lamp data checked, analysed and converted.
+//! `lamp`: goniometric lamp data checked, analysed, converted and drawn.
 
 mod compare;
 mod convert;
 mod files;
 mod load;
+mod plot;
 mod spectral;
 
 use clap::Subcommand;
@@ -36,6 +37,8 @@ pub(super) enum LampCommand {
     Spectral(spectral::SpectralArgs),
     /// Other formats: LM-63, EULUMDAT, TM-33, CSV, light sources for Radiance, pbrt and Mitsuba, a picture.
     Convert(convert::ConvertArgs),
+    /// Diagrams as .svg or .png: a sheet as in a maker's datasheet, or one diagram; several files together or each for itself.
+    Plot(plot::PlotArgs),
 }
 
 pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
@@ -87,5 +90,6 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         LampCommand::Compare(a) => compare::compare(&a, talk),
         LampCommand::Spectral(a) => spectral::spectral(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
+        LampCommand::Plot(a) => plot::plot(&a, talk),
     }
 }
