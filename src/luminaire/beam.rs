@@ -1,6 +1,6 @@
 //! Beam and field angles in the two principal planes, in the three definitions that are in use.
 
-use super::distribution::{Distribution, System};
+use super::distribution::{Distribution, Interpolation, System};
 
 /// Which two directions an angle lies between; `fraction` is ½ for the beam and ⅒ for the field angle.
 ///
@@ -59,7 +59,7 @@ pub fn field_angles(distribution: &Distribution) -> [PlaneAngles; 3] {
     Definition::ALL.map(|d| angles(distribution, FIELD_FRACTION, d))
 }
 
-/// The angle at a fraction in both principal planes. Crossings are interpolated linearly between the table's entries; a plane
+/// The angle at a fraction in both principal planes. Crossings between the table's entries are those of its interpolation; a plane
 /// that never falls below the fraction ends where its table ends.
 #[must_use]
 pub fn angles(distribution: &Distribution, fraction: f64, definition: Definition) -> PlaneAngles {
@@ -68,13 +68,16 @@ pub fn angles(distribution: &Distribution, fraction: f64, definition: Definition
 }
 
 /// A cut through the axis: signed angle from it, degrees ascending, and the value there.
-struct Slice {
+struct Slice<'d> {
+    distribution: &'d Distribution,
+    /// Along C0–C180 or the horizontal angle, else across.
+    first: bool,
     angles: Vec<f64>,
     values: Vec<f64>,
 }
 
-impl Slice {
-    fn of(distribution: &Distribution, first: bool) -> Self {
+impl<'d> Slice<'d> {
+    fn of(distribution: &'d Distribution, first: bool) -> Self {
         let angles = match (distribution.system(), first) {
             // C180 (C270) counts negative; both halves share the value at nadir, which is that of C0 (C90).
             (System::TypeC, _) => mirrored(distribution.vertical_deg()),
@@ -82,16 +85,20 @@ impl Slice {
             (_, true) => distribution.horizontal_deg().to_vec(),
             (_, false) => distribution.vertical_deg().to_vec(),
         };
-        let at = |a: f64| match (distribution.system(), first) {
+        let mut slice = Self { distribution, first, angles, values: Vec::new() };
+        slice.values = slice.angles.iter().map(|a| slice.at(*a)).collect();
+        slice
+    }
+
+    fn at(&self, angle: f64) -> f64 {
+        match (self.distribution.system(), self.first) {
             (System::TypeC, _) => {
-                let c = if first { 0.0 } else { 90.0 } + if a < 0.0 { 180.0 } else { 0.0 };
-                distribution.at(c, a.abs())
+                let c = if self.first { 0.0 } else { 90.0 } + if angle < 0.0 { 180.0 } else { 0.0 };
+                self.distribution.at(c, angle.abs())
             }
-            (_, true) => distribution.at(a, 0.0),
-            (_, false) => distribution.at(0.0, a),
-        };
-        let values = angles.iter().map(|a| at(*a)).collect();
-        Self { angles, values }
+            (_, true) => self.distribution.at(angle, 0.0),
+            (_, false) => self.distribution.at(0.0, angle),
+        }
     }
 
     fn angle(&self, fraction: f64, definition: Definition, peak: f64) -> Option<f64> {
@@ -135,6 +142,15 @@ impl Slice {
 
     /// Angle between an entry below the threshold and a neighbour that reaches it.
     fn crossing(&self, below: usize, above: usize, threshold: f64) -> f64 {
+        if self.distribution.interpolation() == Interpolation::MonotoneCubic {
+            // Monotone between the two: halving the interval until nothing is left of it finds the only crossing.
+            let (mut low, mut high) = (self.angles[below], self.angles[above]);
+            for _ in 0..f64::MANTISSA_DIGITS {
+                let middle = 0.5 * (low + high);
+                *if self.at(middle) < threshold { &mut low } else { &mut high } = middle;
+            }
+            return 0.5 * (low + high);
+        }
         let t = (threshold - self.values[below]) / (self.values[above] - self.values[below]);
         self.angles[below] + t * (self.angles[above] - self.angles[below])
     }

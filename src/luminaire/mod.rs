@@ -4,6 +4,7 @@ pub mod beam;
 pub mod bug;
 pub mod cone;
 pub mod cu;
+mod cubic;
 pub mod distribution;
 mod flux;
 pub mod format;
@@ -17,7 +18,7 @@ pub mod ugr;
 mod unavailable;
 pub mod zonal;
 
-pub use distribution::{Distribution, Symmetry, System};
+pub use distribution::{Distribution, Interpolation, Symmetry, System};
 pub use model::{Body, Kind, LampSet, Luminaire, Shape};
 pub use unavailable::Unavailable;
 

@@ -3,19 +3,22 @@
 mod check;
 mod convert;
 mod files;
+mod interpolation;
 mod load;
 
-use clap::Subcommand;
+use clap::{Args, Subcommand};
 
 use self::files::{FilesArgs, files};
+use self::interpolation::InterpolationArgs;
 use super::{Failure, Talk};
+use crate::luminaire::format::File;
 use crate::report::lamp as report;
 
 /// Verbs of `lamp`.
 #[derive(Debug, Subcommand)]
 pub(super) enum LampCommand {
     /// Facts and figures: flux, peak, beam, zones, luminance.
-    Info(FilesArgs),
+    Info(InfoArgs),
     /// Findings; exit code 1 where there are errors among them.
     Check(FilesArgs),
     /// The corrected UGR table (CIE 190): 19 rooms, crosswise and endwise.
@@ -26,9 +29,24 @@ pub(super) enum LampCommand {
     Convert(convert::ConvertArgs),
 }
 
+/// Arguments of `lamp info`.
+#[derive(Debug, Args)]
+pub(super) struct InfoArgs {
+    #[command(flatten)]
+    files: FilesArgs,
+    #[command(flatten)]
+    interpolation: InterpolationArgs,
+}
+
+fn info(arguments: &InfoArgs, talk: Talk) -> Result<(), Failure> {
+    let interpolation = arguments.interpolation.value();
+    let figures = |file: &File| Ok(report::info(&interpolation::declared(file, interpolation)));
+    files(&arguments.files, talk, "lamp info", &figures, &report::info_text)
+}
+
 pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
     match command {
-        LampCommand::Info(a) => files(&a, talk, "lamp info", &|f| Ok(report::info(f)), &report::info_text),
+        LampCommand::Info(a) => info(&a, talk),
         LampCommand::Ugr(a) => {
             files(&a, talk, "lamp ugr", &|f| report::ugr(f).map_err(|e| e.to_string()), &report::rows_text)
         }

@@ -108,7 +108,7 @@ pub fn info(file: &File) -> Map<String, Value> {
     if let Some(opening) = &lamp.opening {
         set("luminous_opening_m", body(opening));
     }
-    set("interpolation", "bilinear in angle".into());
+    set("interpolation", d.interpolation().name().into());
     out
 }
 
@@ -155,6 +155,7 @@ pub fn info_text(path: &str, o: &Map<String, Value>) -> String {
             number(o, "vertical_angles", 6)
         ),
     );
+    line("interpolation", text(o, "interpolation"));
     for (unit, flux, zonal, peak, declared) in [
         ("lm", "total_flux_lm", "total_flux_zonal_lm", "peak_intensity_cd", "declared_flux_lm"),
         ("W", "total_flux_w", "total_flux_zonal_w", "peak_intensity_w_per_sr", "declared_flux_w"),
