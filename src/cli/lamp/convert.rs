@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::load::load;
+use super::transform_args::TransformArgs;
 use crate::cli::notes::Notes;
 use crate::cli::{Failure, Talk, output};
 use crate::finding::Checked;
@@ -25,6 +26,8 @@ pub(in crate::cli) struct ConvertArgs {
     /// Repair what can be repaired safely; each repair is listed.
     #[arg(long)]
     repair: bool,
+    #[command(flatten)]
+    transform: TransformArgs,
 }
 
 fn edition(text: &str) -> Result<ies::Version, String> {
@@ -33,11 +36,14 @@ fn edition(text: &str) -> Result<ies::Version, String> {
 }
 
 pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure> {
-    let inputs = [arguments.file.clone()];
+    let mut inputs = vec![arguments.file.clone()];
+    inputs.extend(arguments.transform.inputs().map(str::to_owned));
     let notes = Notes::new(&inputs, talk);
     let file = load(&arguments.file, arguments.repair).file.map_err(|(message, _)| Failure::Message(message))?;
     notes.print(&file.findings);
-    let lamp = &file.value.luminaire;
+    let Checked { value: lamp, findings } = arguments.transform.apply(&file.value, arguments.repair)?;
+    notes.print(&findings);
+    let lamp = &lamp;
     let ending = arguments.output.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
     let written = match ending.as_deref() {
         Some("ies") => ies::write(lamp, arguments.lm63),

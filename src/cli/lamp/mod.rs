@@ -5,6 +5,7 @@ mod convert;
 mod files;
 mod interpolation;
 mod load;
+mod transform_args;
 
 use clap::{Args, Subcommand};
 
@@ -26,7 +27,7 @@ pub(super) enum LampCommand {
     /// Zonal-cavity coefficients of utilisation, per cent.
     Cu(FilesArgs),
     /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
-    Convert(convert::ConvertArgs),
+    Convert(Box<convert::ConvertArgs>),
 }
 
 /// Arguments of `lamp info`.

@@ -39,7 +39,6 @@
 
 mod bodies;
 mod bridge;
-mod combine;
 mod emitter;
 mod lexical;
 mod parse;
