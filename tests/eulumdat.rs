@@ -484,7 +484,12 @@ fn what_the_format_cannot_carry_is_said_or_refused() {
     luminaire.distribution =
         Distribution::new(System::TypeB, Symmetry::Quadrant, vec![0.0, 90.0], vec![-90.0, 90.0], vec![1.0; 4])
             .expect("a table");
-    assert!(eulumdat::write(&luminaire).is_err());
+    // Types A and B become Type C: an even half space of 1 cd has 2π lm.
+    let text = eulumdat::write(&luminaire).expect("written");
+    assert!(text.findings.iter().any(|f| f.code == "L401"), "{:?}", text.findings);
+    let again = read(text.value.as_bytes()).value.distribution;
+    assert_eq!((again.system(), again.symmetry()), (System::TypeC, Symmetry::Rotational));
+    assert!((again.total_flux() / (2.0 * std::f64::consts::PI) - 1.0).abs() < 1e-6);
 }
 
 proptest! {

@@ -127,6 +127,16 @@ impl AngularSpectra {
     pub fn at_wavelength(&self, wavelength: usize) -> Result<Distribution, Error> {
         self.frame.with_values((0..self.directions()).map(|d| self.values(d)[wavelength]).collect())
     }
+
+    /// The same spectra with the table of every wavelength changed alike.
+    ///
+    /// # Errors
+    /// Those of the change; [`Error::Count`] where the changed tables do not all have the same angles.
+    pub fn map<E: From<Error>>(&self, change: impl Fn(&Distribution) -> Result<Distribution, E>) -> Result<Self, E> {
+        let changed = |wavelength| change(&self.at_wavelength(wavelength)?);
+        let tables: Vec<Distribution> = (0..self.grid.len()).map(changed).collect::<Result<_, E>>()?;
+        Ok(Self::new(Arc::clone(&self.grid), &tables)?)
+    }
 }
 
 #[cfg(test)]

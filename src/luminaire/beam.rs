@@ -60,7 +60,7 @@ pub fn field_angles(distribution: &Distribution) -> [PlaneAngles; 3] {
     Definition::ALL.map(|d| angles(distribution, FIELD_FRACTION, d))
 }
 
-/// The angle at a fraction in both principal planes. Crossings are interpolated linearly between the table's entries; a plane
+/// The angle at a fraction in both principal planes. Crossings between the table's entries are those of its interpolation; a plane
 /// that never falls below the fraction ends where its table ends.
 #[must_use]
 pub fn angles(distribution: &Distribution, fraction: f64, definition: Definition) -> PlaneAngles {

@@ -3,11 +3,14 @@
 use glam::DVec3;
 
 use super::beam::Definition;
-use super::distribution::{Distribution, System};
+use super::distribution::{Distribution, Interpolation, System};
 
-/// Intensity in one plane through the axis. Between entries the intensity is linear in the angle; beyond them it is zero.
+/// Intensity in one plane through the axis. Between entries it is interpolated as the distribution is; beyond them it is zero.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cut {
+pub struct Cut<'d> {
+    distribution: &'d Distribution,
+    /// C of the positive half, degrees.
+    plane_deg: f64,
     /// Signed angle from the axis, degrees, strictly ascending: positive in the half-plane asked for, negative in the one across.
     pub angles_deg: Vec<f64>,
     /// The intensity at each, in the distribution's unit.
@@ -17,15 +20,15 @@ pub struct Cut {
 /// Step of cuts through Type A and B tables that run along neither of their angles, degrees.
 const STEP_DEG: f64 = 0.5;
 
-impl Cut {
+impl<'d> Cut<'d> {
     /// The cut through the half-planes at `plane_deg` (C, degrees) and `plane_deg + 180`.
     ///
     /// For Type C its entries are the table's γ. For Types A and B, 0 is the cut along the horizontal angle at V = 0, 90 the one
     /// along the vertical angle at H = 0, with the table's entries; planes between are sampled every half degree.
     #[must_use]
-    pub fn of(distribution: &Distribution, plane_deg: f64) -> Self {
-        let plane = plane_deg.rem_euclid(360.0);
-        let native = (distribution.system() != System::TypeC).then_some(plane);
+    pub fn of(distribution: &'d Distribution, plane_deg: f64) -> Self {
+        let plane_deg = plane_deg.rem_euclid(360.0);
+        let native = (distribution.system() != System::TypeC).then_some(plane_deg);
         let angles_deg = match native {
             // C180 (C270) counts negative; both halves share the value at nadir, which is that of C0 (C90).
             None => mirrored(distribution.vertical_deg()),
@@ -34,17 +37,27 @@ impl Cut {
             Some(90.0) => distribution.vertical_deg().to_vec(),
             Some(_) => (-180..=180).map(|i| STEP_DEG * f64::from(i)).collect(),
         };
-        let at = |a: f64| match native {
-            None => distribution.at(plane + if a < 0.0 { 180.0 } else { 0.0 }, a.abs()),
-            Some(0.0) => distribution.at(a, 0.0),
-            Some(90.0) => distribution.at(0.0, a),
-            Some(roll) => {
-                let ((s, c), (sin_roll, cos_roll)) = (a.to_radians().sin_cos(), roll.to_radians().sin_cos());
-                distribution.towards(DVec3::new(s * cos_roll, s * sin_roll, -c))
+        let mut cut = Self { distribution, plane_deg, angles_deg, values: Vec::new() };
+        cut.values = cut.angles_deg.iter().map(|a| cut.at(*a)).collect();
+        cut
+    }
+
+    /// The intensity at a signed angle from the axis, degrees.
+    #[must_use]
+    pub fn at(&self, angle_deg: f64) -> f64 {
+        let d = self.distribution;
+        if d.system() == System::TypeC {
+            return d.at(self.plane_deg + if angle_deg < 0.0 { 180.0 } else { 0.0 }, angle_deg.abs());
+        }
+        match self.plane_deg {
+            0.0 => d.at(angle_deg, 0.0),
+            90.0 => d.at(0.0, angle_deg),
+            roll => {
+                let (sin, cos) = angle_deg.to_radians().sin_cos();
+                let (sin_roll, cos_roll) = roll.to_radians().sin_cos();
+                d.towards(DVec3::new(sin * cos_roll, sin * sin_roll, -cos))
             }
-        };
-        let values = angles_deg.iter().map(|a| at(*a)).collect();
-        Self { angles_deg, values }
+        }
     }
 
     /// The two signed angles, degrees, between which the intensity reaches `fraction` by the definition; `peak` is the maximum of
@@ -91,6 +104,15 @@ impl Cut {
 
     /// Angle between an entry below the threshold and a neighbour that reaches it.
     fn crossing(&self, below: usize, above: usize, threshold: f64) -> f64 {
+        if self.distribution.interpolation() == Interpolation::MonotoneCubic {
+            // Monotone between the two: halving the interval until nothing is left of it finds the only crossing.
+            let (mut low, mut high) = (self.angles_deg[below], self.angles_deg[above]);
+            for _ in 0..f64::MANTISSA_DIGITS {
+                let middle = 0.5 * (low + high);
+                *if self.at(middle) < threshold { &mut low } else { &mut high } = middle;
+            }
+            return 0.5 * (low + high);
+        }
         let t = (threshold - self.values[below]) / (self.values[above] - self.values[below]);
         self.angles_deg[below] + t * (self.angles_deg[above] - self.angles_deg[below])
     }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Error;
+use crate::math::interpolate::pchip_slopes;
 
 /// The angles of a table (IES LM-63, LM-75).
 ///
@@ -33,9 +34,33 @@ pub enum Symmetry {
     None,
 }
 
+/// What the intensity is between the entries of a table. No file format says; ours to declare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Interpolation {
+    /// Linear in each angle: what the trade's tools do.
+    #[default]
+    Bilinear,
+    /// Monotone cubic (PCHIP, Fritsch & Butland 1984) along the vertical angle of each plane, then across the planes, around the
+    /// turn where it closes and mirrored where the symmetry mirrors. Smooth, exact at the entries, never beyond the entries
+    /// around it: never negative where they are not.
+    MonotoneCubic,
+}
+
+impl Interpolation {
+    /// Its name in reports and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bilinear => "bilinear",
+            Self::MonotoneCubic => "monotone-cubic",
+        }
+    }
+}
+
 /// A table of intensities over two angles.
 ///
-/// Values between entries are bilinear in the two angles; beyond the tabulated vertical angles the intensity is zero.
+/// Values between entries are interpolated as declared ([`Interpolation::Bilinear`] unless said otherwise); beyond the tabulated
+/// vertical angles the intensity is zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distribution {
     system: System,
@@ -44,10 +69,13 @@ pub struct Distribution {
     vertical_deg: Vec<f64>,
     /// Plane by plane: `values[plane * vertical.len() + row]`.
     values: Vec<f64>,
+    interpolation: Interpolation,
+    /// Slopes of the values along the vertical angle, per degree, as many; none for a bilinear table.
+    slopes: Vec<f64>,
 }
 
 /// Angles nearer than this are the same: files print degrees to at most four decimals.
-const SAME_DEG: f64 = 1e-6;
+pub(super) const SAME_DEG: f64 = 1e-6;
 
 impl Distribution {
     /// A table: `values` plane by plane (row = horizontal angle or C-plane, column = vertical angle or γ).
@@ -110,7 +138,28 @@ impl Distribution {
             horizontal_deg.push(360.0);
             values.extend_from_within(..vertical_deg.len());
         }
-        Ok(Self { system, symmetry, horizontal_deg, vertical_deg, values })
+        let interpolation = Interpolation::Bilinear;
+        Ok(Self { system, symmetry, horizontal_deg, vertical_deg, values, interpolation, slopes: Vec::new() })
+    }
+
+    /// The same table, interpolated as said.
+    #[must_use]
+    pub fn with_interpolation(mut self, interpolation: Interpolation) -> Self {
+        self.interpolation = interpolation;
+        self.slopes = match interpolation {
+            Interpolation::Bilinear => Vec::new(),
+            Interpolation::MonotoneCubic => {
+                let planes = self.values.chunks_exact(self.vertical_deg.len());
+                planes.flat_map(|plane| pchip_slopes(&self.vertical_deg, plane)).collect()
+            }
+        };
+        self
+    }
+
+    /// How the table is interpolated.
+    #[must_use]
+    pub fn interpolation(&self) -> Interpolation {
+        self.interpolation
     }
 
     /// The angles' system.
@@ -153,7 +202,8 @@ impl Distribution {
     /// The same table with each value multiplied by a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        Self { values: self.values.iter().map(|v| v * factor).collect(), ..self.clone() }
+        let by = |list: &[f64]| list.iter().map(|v| v * factor).collect();
+        Self { values: by(&self.values), slopes: by(&self.slopes), ..self.clone() }
     }
 
     /// The same table with other values, in the order of [`Distribution::values`].
@@ -166,7 +216,7 @@ impl Distribution {
         }
         match values.iter().find(|v| !v.is_finite()) {
             Some(found) => Err(Error::Value { found: *found }),
-            None => Ok(Self { values, ..self.clone() }),
+            None => Ok(Self { values, ..self.clone() }.with_interpolation(self.interpolation)),
         }
     }
 
@@ -178,7 +228,14 @@ impl Distribution {
             && self.vertical_deg == other.vertical_deg
     }
 
-    /// The largest value and its native angles (horizontal, vertical), degrees; the first of several equal ones.
+    /// Slopes along the vertical angle of one plane, per degree, of a table that is interpolated cubically.
+    pub(super) fn slopes_along(&self, plane: usize) -> &[f64] {
+        let n = self.vertical_deg.len();
+        &self.slopes[plane * n..(plane + 1) * n]
+    }
+
+    /// The largest value and its native angles (horizontal, vertical), degrees; the first of several equal ones. No
+    /// interpolation exceeds the entries.
     #[must_use]
     pub fn peak(&self) -> (f64, f64, f64) {
         let n = self.vertical_deg.len();
@@ -199,6 +256,10 @@ impl Distribution {
             return 0.0;
         }
         let (row, t) = locate(vertical, vertical_deg);
+        if self.interpolation == Interpolation::MonotoneCubic {
+            let Some(folded) = self.fold(horizontal_deg) else { return 0.0 };
+            return self.cubic(locate(&self.horizontal_deg, folded), (row, t));
+        }
         let along = |plane: usize| {
             let values = self.plane(plane);
             values[row] + t * (values[(row + 1).min(values.len() - 1)] - values[row])

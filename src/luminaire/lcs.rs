@@ -1,8 +1,8 @@
 //! The luminaire classification system for outdoor luminaires: flux in ten solid angles.
 
-use super::distribution::{Distribution, System};
+use super::distribution::Distribution;
 use super::unavailable::Unavailable;
-use super::zonal::{mean_table, rotational};
+use super::zonal::mean_table;
 
 /// Flux in the ten solid angles of the LCS, lm.
 ///
@@ -56,9 +56,8 @@ pub const STREET_C_DEG_EULUMDAT: f64 = 90.0;
 /// [`Unavailable::NotTypeC`].
 pub fn lcs(distribution: &Distribution, street_c_deg: f64) -> Result<Lcs, Unavailable> {
     let whole = mean_table(distribution)?;
-    let front = half_mean_table(distribution, street_c_deg)?;
     let zone = |table: &Distribution, edges: &[f64], i: usize| table.flux_between(edges[i], edges[i + 1]);
-    let forward = std::array::from_fn(|i| 0.5 * zone(&front, &DOWN_DEG, i));
+    let forward = half_fluxes(distribution, street_c_deg);
     let back = std::array::from_fn(|i: usize| {
         let rest = zone(&whole, &DOWN_DEG, i) - forward[i];
         // A dark back must not be a rounding error of the whole.
@@ -67,27 +66,26 @@ pub fn lcs(distribution: &Distribution, street_c_deg: f64) -> Result<Lcs, Unavai
     Ok(Lcs { forward, back, up: std::array::from_fn(|i| zone(&whole, &UP_DEG, i)) })
 }
 
-/// The rotational table with the mean of the half space within 90° of a C-plane, exact for the interpolated intensity.
-fn half_mean_table(distribution: &Distribution, centre_deg: f64) -> Result<Distribution, Unavailable> {
-    if distribution.system() != System::TypeC {
-        return Err(Unavailable::NotTypeC);
-    }
-    // The intensity is linear in C between the planes and their mirror images.
+/// Flux of the half space within 90° of a C-plane in each zone below the horizontal, as exactly as the total flux.
+fn half_fluxes(distribution: &Distribution, centre_deg: f64) -> [f64; 4] {
+    // Between the planes and their mirror images the intensity is a polynomial in C: linear, or cubic.
     let offset = |c: f64| (c - centre_deg + 90.0).rem_euclid(360.0);
     let planes = distribution.horizontal_deg().iter();
     let images = planes.flat_map(|h| [*h, -*h, 180.0 - *h, 180.0 + *h]).map(offset);
-    let mut cuts: Vec<f64> = images.filter(|c| *c < 180.0).chain([0.0, 180.0]).collect();
-    cuts.sort_by(f64::total_cmp);
-    let mean = |g: f64| {
+    let mut edges: Vec<f64> = images.filter(|c| *c < 180.0).chain([0.0, 180.0]).collect();
+    edges.sort_by(f64::total_cmp);
+    // Simpson's rule is exact for both.
+    let integral = |g: f64| {
         let at = |c: f64| distribution.at(c + centre_deg - 90.0, g);
-        cuts.windows(2).map(|w| 0.5 * (w[1] - w[0]) * (at(w[0]) + at(w[1]))).sum::<f64>() / 180.0
+        let part = |a: f64, b: f64| (b - a).to_radians() / 6.0 * (at(a) + 4.0 * at(0.5 * (a + b)) + at(b));
+        edges.windows(2).map(|w| part(w[0], w[1])).sum::<f64>()
     };
-    rotational(distribution, distribution.vertical_deg().iter().map(|g| mean(*g)).collect())
+    std::array::from_fn(|i| distribution.flux_along(&distribution.cuts(DOWN_DEG[i], DOWN_DEG[i + 1]), integral))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::distribution::Symmetry;
+    use super::super::distribution::{Symmetry, System};
     use super::*;
 
     fn lopsided() -> Distribution {

@@ -7,11 +7,13 @@ pub mod colour;
 pub mod compare;
 pub mod cone;
 pub mod cu;
+mod cubic;
 pub mod cut;
 pub mod distribution;
 pub mod export;
 mod flux;
 pub mod format;
+pub mod keyword;
 pub mod lcs;
 pub mod luminance;
 mod model;
@@ -20,12 +22,13 @@ mod room;
 pub mod shape;
 pub mod spacing;
 pub mod spectral;
+pub mod transform;
 pub mod ugr;
 mod unavailable;
 pub mod zonal;
 
 pub use angular::AngularSpectra;
-pub use distribution::{Distribution, Symmetry, System};
+pub use distribution::{Distribution, Interpolation, Symmetry, System};
 pub use model::{Body, Kind, LampSet, Luminaire, Shape};
 pub use unavailable::Unavailable;
 

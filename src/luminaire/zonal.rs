@@ -3,7 +3,9 @@
 //! All fluxes are exact integrals of the interpolated intensity (lm for cd, W for W/sr). Zones lie about the vertical axis, so
 //! these figures are those of Type C tables.
 
-use super::distribution::{Distribution, Symmetry, System};
+use std::borrow::Cow;
+
+use super::distribution::{Distribution, Interpolation, Symmetry, System};
 use super::model::Luminaire;
 use super::unavailable::Unavailable;
 
@@ -46,12 +48,16 @@ fn between(distribution: &Distribution, edges_deg: &[f64]) -> Result<Vec<Zone>, 
     Ok(edges_deg.windows(2).map(zone).collect())
 }
 
-/// The rotationally averaged table: one plane with the mean over C at each γ. Its zones have the fluxes of the whole.
-pub(super) fn mean_table(distribution: &Distribution) -> Result<Distribution, Unavailable> {
+/// A table whose zones have the fluxes of the whole: the rotationally averaged one, a single plane with the mean over C at each γ,
+/// or the table itself where the cubic of the means is not the mean of the cubics.
+pub(super) fn mean_table(distribution: &Distribution) -> Result<Cow<'_, Distribution>, Unavailable> {
     if distribution.system() != System::TypeC {
         return Err(Unavailable::NotTypeC);
     }
-    rotational(distribution, distribution.zonal_means())
+    match distribution.interpolation() {
+        Interpolation::Bilinear => rotational(distribution, distribution.zonal_means()).map(Cow::Owned),
+        Interpolation::MonotoneCubic => Ok(Cow::Borrowed(distribution)),
+    }
 }
 
 /// One plane of given values at the vertical angles of a Type C table.

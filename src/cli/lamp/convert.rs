@@ -12,6 +12,7 @@ use self::place::Places;
 use self::target::{Choice, Target, encode};
 use super::files::FILES_AT_ONCE;
 use super::load::load;
+use super::transform_args::TransformArgs;
 use crate::cli::notes::Notes;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
@@ -39,6 +40,8 @@ pub(in crate::cli) struct ConvertArgs {
     /// Repair what can be repaired safely; each repair is listed.
     #[arg(long)]
     repair: bool,
+    #[command(flatten)]
+    transform: TransformArgs,
 }
 
 fn edition(text: &str) -> Result<ies::Version, String> {
@@ -52,7 +55,9 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
         Failure::Message(format!("{}: {message}", arguments.output.display()))
     })?;
     let choice = Choice { target, lm63: arguments.lm63, pixels: arguments.pixels };
-    let places = Places::of(&arguments.files, &arguments.output, target)?;
+    let read: Vec<String> =
+        arguments.files.iter().map(String::as_str).chain(arguments.transform.inputs()).map(str::to_owned).collect();
+    let places = Places::of(&arguments.files, &read, &arguments.output, target)?;
     places.prepare()?;
     let mut notes = Notes::new(&arguments.files, talk);
     let indices: Vec<usize> = (0..arguments.files.len()).collect();
@@ -89,9 +94,14 @@ fn write_one(
     let stem = places.stem(index).map_err(Failure::Message)?;
     let file = load(path, arguments.repair).file.map_err(|(message, _)| Failure::Message(message))?;
     findings.extend(file.findings);
-    let (lamp, from) = (file.value.luminaire, file.value.format);
-    let encoded = encode(&lamp, from, &stem, choice).map_err(|e| Failure::Message(format!("{path}: {e}")))?;
-    findings.extend(encoded.findings.into_iter().map(|mut finding| {
+    let from = file.value.format;
+    let transformed = arguments.transform.apply(file.value, arguments.repair).map_err(|failure| match failure {
+        Failure::Message(message) => Failure::Message(format!("{path}: {message}")),
+        other => other,
+    })?;
+    let encoded =
+        encode(&transformed.value, from, &stem, choice).map_err(|e| Failure::Message(format!("{path}: {e}")))?;
+    findings.extend(transformed.findings.into_iter().chain(encoded.findings).map(|mut finding| {
         finding.location.path.get_or_insert_with(|| path.clone());
         finding
     }));

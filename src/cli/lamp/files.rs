@@ -8,12 +8,14 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
+use super::interpolation::interpolate;
 use super::load::{Loaded, load};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::writer::{Writer, csv_row};
 use crate::cli::{Failure, Talk};
 use crate::finding::{Checked, Finding, Location};
+use crate::luminaire::Interpolation;
 use crate::luminaire::format::File;
 use crate::report::envelope::Envelope;
 use crate::report::lamp as report;
@@ -47,6 +49,8 @@ type Figured = Result<Map<String, Value>, String>;
 /// What a verb makes of a file.
 pub(super) struct Verb {
     pub command: &'static str,
+    /// How the tables are taken between their entries.
+    pub interpolation: Interpolation,
     /// Settings of the run, besides the arguments.
     pub settings: Map<String, Value>,
     /// The object of the file, or why it has none.
@@ -125,7 +129,10 @@ pub(super) fn files(arguments: &FilesArgs, talk: Talk, verb: &Verb) -> Result<()
 
 /// Reads a file and renders its object; whether it passes, of the verb that judges.
 fn one(path: &str, arguments: &FilesArgs, verb: &Verb) -> Done {
-    let loaded = load(path, arguments.repair);
+    let mut loaded = load(path, arguments.repair);
+    if let Ok(file) = &mut loaded.file {
+        interpolate(&mut file.value, verb.interpolation);
+    }
     let figures = loaded.file.as_ref().ok().map(|file| {
         let mut object = Map::from_iter([("path".to_owned(), path.into())]);
         object.extend((verb.figures)(file)?);

@@ -3,15 +3,19 @@
 mod compare;
 mod convert;
 mod files;
+mod interpolation;
 mod load;
 mod plot;
 mod spectral;
+mod transform_args;
 
-use clap::Subcommand;
+use clap::{Args, Subcommand};
 use serde_json::Map;
 
 use self::files::{FilesArgs, Verb, files};
+use self::interpolation::InterpolationArgs;
 use super::{Failure, Talk};
+use crate::luminaire::Interpolation;
 use crate::report::lamp as report;
 
 /// Verbs of `lamp`.
@@ -20,7 +24,7 @@ pub(super) enum LampCommand {
     /// Facts and figures: flux, peak, beam and field angles, zones, luminance, cone, ratings.
     ///
     /// Each figure names its definition; in JSON they stand under `settings.definitions`.
-    Info(FilesArgs),
+    Info(InfoArgs),
     /// Findings; exit code 1 where there are errors among them.
     ///
     /// Says of each file whether it passes, and every finding with its code, place and hint (docs/findings.md lists the codes).
@@ -36,9 +40,18 @@ pub(super) enum LampCommand {
     /// The lamp with a spectrum: watts, photons, melanopic and hazard-weighted figures; colour over angle of angular spectra.
     Spectral(spectral::SpectralArgs),
     /// Other formats: LM-63, EULUMDAT, TM-33, CSV, light sources for Radiance, pbrt and Mitsuba, a picture.
-    Convert(convert::ConvertArgs),
+    Convert(Box<convert::ConvertArgs>),
     /// Diagrams as .svg or .png: a sheet as in a maker's datasheet, or one diagram; several files together or each for itself.
     Plot(plot::PlotArgs),
+}
+
+/// Arguments of `lamp info`.
+#[derive(Debug, Args)]
+pub(super) struct InfoArgs {
+    #[command(flatten)]
+    files: FilesArgs,
+    #[command(flatten)]
+    interpolation: InterpolationArgs,
 }
 
 pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
@@ -46,17 +59,19 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         LampCommand::Info(a) => {
             let verb = Verb {
                 command: "lamp info",
+                interpolation: a.interpolation.value(),
                 settings: Map::from_iter([("definitions".to_owned(), report::definitions())]),
                 figures: |file| Ok(report::info(&file.value)),
                 text: |path, object, _| report::info_text(path, object),
                 table: report::Table::info(),
                 judges: false,
             };
-            files(&a, talk, &verb)
+            files(&a.files, talk, &verb)
         }
         LampCommand::Check(a) => {
             let verb = Verb {
                 command: "lamp check",
+                interpolation: Interpolation::Bilinear,
                 settings: Map::new(),
                 figures: |file| Ok(report::check(file)),
                 text: report::check_text,
@@ -68,6 +83,7 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         LampCommand::Ugr(a) => {
             let verb = Verb {
                 command: "lamp ugr",
+                interpolation: Interpolation::Bilinear,
                 settings: Map::new(),
                 figures: |file| report::ugr(&file.value).map_err(|e| e.to_string()),
                 text: |path, object, _| report::ugr_text(path, object),
@@ -79,6 +95,7 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         LampCommand::Cu(a) => {
             let verb = Verb {
                 command: "lamp cu",
+                interpolation: Interpolation::Bilinear,
                 settings: Map::new(),
                 figures: |file| report::cu(&file.value).map_err(|e| e.to_string()),
                 text: |path, object, _| report::cu_text(path, object),

@@ -86,6 +86,9 @@ pub enum ErrorKind {
     /// The table does not make a distribution.
     #[error(transparent)]
     Table(#[from] crate::luminaire::Error),
+    /// The table cannot be brought into the shape that is needed.
+    #[error(transparent)]
+    Transform(#[from] crate::luminaire::transform::Error),
 }
 
 /// An [`ErrorKind`] with its place and a hint.

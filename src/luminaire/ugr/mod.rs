@@ -121,7 +121,7 @@ impl Flux {
     fn new(distribution: &Distribution) -> Result<Self, Unavailable> {
         let mean = mean_table(distribution)?;
         let edge = |i: usize| (10.0 * i as f64).to_radians().cos();
-        let zone = |i: usize| std::f64::consts::TAU * (edge(i) - edge(i + 1)) * mean.at(0.0, 10.0 * i as f64 + 5.0);
+        let zone = |i: usize| std::f64::consts::TAU * (edge(i) - edge(i + 1)) * mean.zonal_mean(10.0 * i as f64 + 5.0);
         let zones: [f64; 18] = std::array::from_fn(zone);
         if zones.iter().sum::<f64>() > 0.0 { Ok(Self { zones }) } else { Err(Unavailable::Dark) }
     }

@@ -13,9 +13,9 @@ const FAINT: f64 = 0.01;
 const FAINT_LOGARITHMIC: f64 = 1e-4;
 
 /// One curve with what it was made of.
-struct Traced {
+struct Traced<'d> {
     curve: AngularCurve,
-    cut: Cut,
+    cut: Cut<'d>,
     factor: f64,
 }
 
@@ -37,7 +37,7 @@ pub fn cartesian_panel(drawn: &[Drawn<'_>], view: &View) -> Result<CartesianPane
     let mut traced = traced(drawn, view)?;
     let largest = traced.iter().flat_map(|t| t.curve.values.iter().copied()).fold(0.0, f64::max);
     let faint = largest * if view.logarithmic { FAINT_LOGARITHMIC } else { FAINT };
-    let lit = |t: &Traced| {
+    let lit = |t: &Traced<'_>| {
         let samples = t.curve.angles_deg.iter().copied().zip(t.curve.values.iter().map(|v| v.abs()));
         last_above(samples, faint)
     };
@@ -84,7 +84,7 @@ fn unit_of(drawn: &[Drawn<'_>], view: &View) -> &'static str {
     drawn.first().map_or("", |d| unit(d.luminaire.kind, view.per_klm))
 }
 
-fn traced(drawn: &[Drawn<'_>], view: &View) -> Result<Vec<Traced>, Error> {
+fn traced<'d>(drawn: &[Drawn<'d>], view: &View) -> Result<Vec<Traced<'d>>, Error> {
     if drawn.windows(2).any(|w| w[0].luminaire.kind != w[1].luminaire.kind) {
         return Err(Error::Kinds);
     }
@@ -131,7 +131,7 @@ fn plane_name(distribution: &Distribution, view: &View, plane: f64) -> String {
 }
 
 /// The cut as a curve that falls to zero where the table ends.
-fn curve(distribution: &Distribution, cut: &Cut, factor: f64, name: String) -> AngularCurve {
+fn curve(distribution: &Distribution, cut: &Cut<'_>, factor: f64, name: String) -> AngularCurve {
     let mut samples: Vec<(f64, f64)> = Vec::with_capacity(cut.angles_deg.len() + 4);
     let end = if distribution.system() == System::TypeC { 180.0 } else { 90.0 };
     let inner = distribution.vertical_deg()[0];

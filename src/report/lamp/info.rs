@@ -167,7 +167,7 @@ pub fn info(file: &File) -> Map<String, Value> {
     if let Some(opening) = &lamp.opening {
         set("luminous_opening_m", body(opening));
     }
-    set("interpolation", "bilinear in angle".into());
+    set("interpolation", d.interpolation().name().into());
     out
 }
 

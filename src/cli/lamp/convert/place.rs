@@ -19,7 +19,9 @@ pub(super) struct Places {
 
 impl Places {
     /// The places for inputs and an output as the user gave them.
-    pub(super) fn of(inputs: &[String], output: &Path, target: Target) -> Result<Self, Failure> {
+    ///
+    /// `read` are all files that the run reads, which none of the places may be.
+    pub(super) fn of(inputs: &[String], read: &[String], output: &Path, target: Target) -> Result<Self, Failure> {
         let is_folder = output.is_dir() || output.to_string_lossy().ends_with(std::path::is_separator);
         if !is_folder && inputs.len() > 1 {
             let message = format!("{}: one output for {} inputs; expected a folder", output.display(), inputs.len());
@@ -27,7 +29,7 @@ impl Places {
         }
         if !is_folder {
             let one = [Ok(output.to_owned())];
-            return Ok(Self { folder: None, mains: one.into(), inputs: resolved(inputs) });
+            return Ok(Self { folder: None, mains: one.into(), inputs: resolved(read) });
         }
         // By lower case: some file systems take names that differ in case for one.
         let mut taken: HashMap<String, usize> = HashMap::new();
@@ -45,7 +47,7 @@ impl Places {
                 ))
             });
         }
-        Ok(Self { folder: Some(output.to_owned()), mains, inputs: resolved(inputs) })
+        Ok(Self { folder: Some(output.to_owned()), mains, inputs: resolved(read) })
     }
 
     /// Makes the folder where there is none.

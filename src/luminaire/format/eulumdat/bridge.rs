@@ -4,26 +4,7 @@ use super::super::error::{Error, ErrorKind};
 use super::super::plausible;
 use super::{Eulumdat, Stored, checks, planes};
 use crate::finding::{Checked, Location};
-use crate::luminaire::{Body, Kind, LampSet, Luminaire, Shape};
-
-/// Labels of what the model keeps as [`Luminaire::keywords`]; those of LM-63 where it has the same, else with the underscore that
-/// LM-63-2002, 5.2 reserves for a user's own.
-pub(super) mod keyword {
-    /// Measurement report number (line 8).
-    pub(in super::super) const REPORT: &str = "TEST";
-    /// File name (line 11).
-    pub(in super::super) const FILE: &str = "_FILENAME";
-    /// Date and user (line 12).
-    pub(in super::super) const DATE_USER: &str = "_DATE_USER";
-    /// Ityp (line 2).
-    pub(in super::super) const TYPE: &str = "_ITYP";
-    /// Tilt during the measurement (line 25), °.
-    pub(in super::super) const TILT: &str = "_TILT_DEG";
-    /// Heights of the luminous area at C0, C90, C180, C270 (lines 18–21), mm.
-    pub(in super::super) const HEIGHTS: &str = "_OPENING_HEIGHTS_MM";
-    /// The ten direct ratios.
-    pub(in super::super) const DIRECT_RATIOS: &str = "_DIRECT_RATIOS";
-}
+use crate::luminaire::{Body, Kind, LampSet, Luminaire, Shape, keyword};
 
 impl Eulumdat {
     /// The luminaire, with one set of lamps (from 0) scaling the intensities: it comes first among the model's sets.
@@ -107,7 +88,7 @@ impl Eulumdat {
         keep(keyword::DATE_USER, plain(&self.date_user));
         keep(keyword::TYPE, self.type_indicator.to_string());
         if self.tilt_deg != 0.0 {
-            keep(keyword::TILT, self.tilt_deg.to_string());
+            keep(keyword::TILT_DEG, self.tilt_deg.to_string());
         }
         let heights = self.opening_heights_mm;
         if heights.iter().any(|h| *h != heights[0]) {

@@ -1,10 +1,10 @@
 //! From the model to a EULUMDAT file.
 
 use super::super::error::{Error, ErrorKind};
-use super::bridge::keyword;
 use super::planes::{PlaneSet, plane_set, step};
 use crate::finding::{Checked, Finding, Location};
-use crate::luminaire::{Body, Distribution, Kind, Luminaire, Shape, Symmetry, System};
+use crate::luminaire::transform::{Resampling, Turn, turn};
+use crate::luminaire::{Body, Distribution, Kind, Luminaire, Shape, Symmetry, System, keyword};
 
 /// Characters that a line of text may have.
 const LONGEST: usize = 78;
@@ -17,31 +17,24 @@ const MOST_OUTPUT: f64 = 1.005;
 /// that flux and peak change by less than 1e-6; LORL and DFF from the integrated flux. Findings L290 say what is not carried.
 ///
 /// Direct ratios, which follow from a room method and not from the luminaire alone, are written where the model has them from
-/// a EULUMDAT file, else as 0.
+/// a EULUMDAT file, else as 0. Tables of Types A and B, which the format does not have, are sampled as Type C (finding L401).
 ///
 /// # Errors
-/// [`ErrorKind::Unexpected`] for Types A and B and for radiant or photon intensity, which the format does not have.
+/// [`ErrorKind::Unexpected`] for radiant or photon intensity, which the format does not have.
 pub fn write(luminaire: &Luminaire) -> Result<Checked<String>, Error> {
-    let table = &luminaire.distribution;
-    let refused = |found: &str, expected: &str, hint: &'static str| {
-        let kind = ErrorKind::Unexpected { found: found.to_owned(), expected: expected.to_owned() };
-        Err(Error::new(Location::default(), kind).with_hint(hint))
-    };
-    if table.system() != System::TypeC {
-        return refused(
-            "a table of Type A or B",
-            "Type C, the only one that EULUMDAT has",
-            "convert the table to Type C",
-        );
-    }
     if luminaire.kind != Kind::Luminous {
-        return refused(
-            "radiant or photon intensity",
-            "luminous intensity, the only one that EULUMDAT has",
-            "write TM-33-23, which has all three",
-        );
+        let kind = ErrorKind::Unexpected {
+            found: "radiant or photon intensity".to_owned(),
+            expected: "luminous intensity, the only one that EULUMDAT has".to_owned(),
+        };
+        return Err(Error::new(Location::default(), kind).with_hint("write TM-33-23, which has all three"));
     }
-    let mut file = Writer { lines: Vec::new(), findings: Vec::new() };
+    let Checked { value: luminaire, findings } =
+        turn(luminaire, &Turn::default(), System::TypeC, &Resampling::default())
+            .map_err(|error| Error::new(Location::default(), error))?;
+    let luminaire = &luminaire;
+    let table = &luminaire.distribution;
+    let mut file = Writer { lines: Vec::new(), findings };
     let set = plane_set(table);
     if set.added > 0 {
         let message = format!(
@@ -189,7 +182,7 @@ impl Writer {
             self.lines.push(digits(100.0 * share.clamp(0.0, 1.0), 3));
         }
         self.number(1.0);
-        self.number(keyword_of(luminaire, keyword::TILT).and_then(|t| t.parse().ok()).unwrap_or(0.0));
+        self.number(keyword_of(luminaire, keyword::TILT_DEG).and_then(|t| t.parse().ok()).unwrap_or(0.0));
         let none = [crate::luminaire::LampSet::default()];
         let sets = if luminaire.lamps.is_empty() { &none[..] } else { &luminaire.lamps[..] };
         let (written, dropped): (Vec<_>, Vec<_>) =
@@ -244,7 +237,7 @@ impl Writer {
             keyword::FILE,
             keyword::DATE_USER,
             keyword::TYPE,
-            keyword::TILT,
+            keyword::TILT_DEG,
             keyword::HEIGHTS,
             keyword::DIRECT_RATIOS,
         ];

@@ -5,7 +5,7 @@ use super::super::plausible;
 use super::opening::opening;
 use super::{RawIes, Tilt, Version, angles, radiometric};
 use crate::finding::{Checked, Finding, Location};
-use crate::luminaire::{Body, Distribution, LampSet, Luminaire, Symmetry};
+use crate::luminaire::{Body, Distribution, LampSet, Luminaire, Symmetry, keyword};
 
 /// A luminous opening beyond this is in the wrong unit, m.
 const LARGEST_M: f64 = 20.0;
@@ -15,10 +15,6 @@ const SAME_PLANE: f64 = 0.005;
 
 /// Keywords whose text becomes a field of the luminaire.
 const FIELDS: [&str; 4] = ["LUMINAIRE", "MANUFAC", "LUMCAT", "LAMP"];
-
-/// Names of keywords by which makers declare the luminaire's own flux, without blanks, `_` and `-`.
-const DECLARED: [&str; 6] =
-    ["ABSOLUTELUMENS", "TOTALLUMINAIRELUMENS", "LUMINAIRELUMENS", "TOTALLUMENS", "LUMINAIREFLUX", "TOTALLUMINAIREFLUX"];
 
 impl RawIes {
     /// The luminaire that the file describes: intensities with all factors, angles ascending, the turn closed.
@@ -194,7 +190,7 @@ impl Facts {
             Tilt::File(name) => keywords.push(("TILT".to_owned(), name.clone())),
         }
         if raw.version == Version::Lm63_2019 {
-            keywords.push(("FILEGENERATION".to_owned(), format!("{:.5}", raw.photometric_factor)));
+            keywords.push((keyword::FILE_GENERATION.to_owned(), format!("{:.5}", raw.photometric_factor)));
         }
         Self {
             name,
@@ -217,10 +213,7 @@ fn labelled<'r>(raw: &'r RawIes, label: &str) -> Option<&'r str> {
 
 /// The luminaire's flux by its keywords.
 fn declared(raw: &RawIes) -> Option<f64> {
-    raw.keywords.iter().find_map(|keyword| {
-        let bare: String = keyword.name.chars().filter(char::is_ascii_alphanumeric).collect();
-        DECLARED.contains(&bare.as_str()).then(|| amount(&keyword.text)).flatten()
-    })
+    raw.keywords.iter().filter(|k| keyword::declares_flux(&k.name)).find_map(|k| amount(&k.text))
 }
 
 /// The number that a text begins with, also with commas between thousands.

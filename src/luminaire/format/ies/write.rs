@@ -5,7 +5,7 @@ use super::label::{ascii, labels};
 use super::opening::dimensions;
 use super::{TiltTable, Version};
 use crate::finding::{Checked, Finding, Location};
-use crate::luminaire::{Distribution, Kind, Luminaire, Symmetry, System};
+use crate::luminaire::{Distribution, Kind, Luminaire, Symmetry, System, keyword};
 
 /// Columns of the lines of numbers: every edition allows them, and a screen shows them.
 const COLUMNS: usize = 78;
@@ -161,7 +161,8 @@ fn factor(luminaire: &Luminaire, version: Version) -> String {
     if version < Version::Lm63_2019 {
         return "1".to_owned();
     }
-    let code = luminaire.keywords.iter().find(|(name, _)| name == "FILEGENERATION").and_then(|(_, t)| t.parse().ok());
+    let code =
+        luminaire.keywords.iter().find(|(name, _)| name == keyword::FILE_GENERATION).and_then(|(_, t)| t.parse().ok());
     match code.filter(|code| super::file_generation(*code).is_some()) {
         Some(code) => format!("{code:.5}"),
         None => "1.00001".to_owned(),

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::super::error::{Error, ErrorKind};
-use super::{AngularSpectral, Tm33, combine, planes};
+use super::{AngularSpectral, Tm33, planes};
 use crate::finding::Finding;
-use crate::luminaire::{AngularSpectra, Distribution};
+use crate::luminaire::{AngularSpectra, Distribution, transform};
 use crate::spectrum::Grid;
 
 /// More values than this in a sum over emitters with directions of their own are not made.
@@ -35,7 +35,9 @@ impl Tm33 {
                 // What there is to say of the angles was said of their sum over wavelength.
                 parts.push(planes::distribution(&table, self.goniometer, &mut Vec::new())?);
             }
-            let Some(sum) = combine::sum(&parts)? else { return Ok(None) };
+            let Some(sum) = transform::sum(&parts).map_err(|error| Error::new(first.location.clone(), error))? else {
+                return Ok(None);
+            };
             if sum.values().len().saturating_mul(first.wavelengths_nm.len()) > MOST_VALUES {
                 return not_taken("the directions of all emitters together are too many".to_owned());
             }

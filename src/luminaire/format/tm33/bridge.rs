@@ -2,9 +2,9 @@
 
 use super::super::error::{Error, ErrorKind};
 use super::super::plausible;
-use super::{Emitter, IntensityTable, Tm33, combine, planes};
+use super::{Emitter, IntensityTable, Tm33, planes};
 use crate::finding::{Checked, Finding, Location};
-use crate::luminaire::{AngularSpectra, Distribution, Kind, LampSet, Luminaire};
+use crate::luminaire::{AngularSpectra, Distribution, Kind, LampSet, Luminaire, transform};
 use crate::spectrum::Spectrum;
 
 /// More emitters than this are a negative number that went through 32 bits, or nonsense.
@@ -34,7 +34,7 @@ impl Tm33 {
             }
             parts.push(planes::distribution(table, self.goniometer, &mut findings)?);
         }
-        let Some(distribution) = combine::sum(&parts)? else {
+        let Some(distribution) = transform::sum(&parts).map_err(|error| Error::new(Location::default(), error))? else {
             let kind = ErrorKind::Unexpected {
                 found: "no intensity".to_owned(),
                 expected: format!("{} in an emitter", kind_words(kind)),

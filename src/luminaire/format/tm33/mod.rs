@@ -41,7 +41,6 @@
 mod angular;
 mod bodies;
 mod bridge;
-mod combine;
 mod emitter;
 mod lexical;
 mod parse;
