@@ -43,6 +43,21 @@ pub struct Body {
     pub height_m: f64,
 }
 
+impl Body {
+    /// Height of a sphere or a lying cylinder, m: without one it is as high as its shorter side.
+    pub(super) fn round_height_m(&self) -> f64 {
+        if self.height_m > 0.0 { self.height_m } else { self.width_m.min(self.length_m) }
+    }
+
+    /// Whether a lying cylinder has its axis along the width (x): across the side that equals its height, else along the
+    /// longer side.
+    pub(super) fn lies_along_width(&self) -> bool {
+        let (l, w, h) = (self.length_m, self.width_m, self.round_height_m());
+        let same = |a: f64, b: f64| (a - b).abs() <= 1e-6 * (a + b);
+        same(l, h) || (!same(w, h) && w >= l)
+    }
+}
+
 /// One set of lamps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LampSet {

@@ -19,6 +19,7 @@ pub(super) fn default_size(panels: &[Panel]) -> (u32, u32) {
 fn natural(panels: &[Panel]) -> (f64, f64) {
     match panels {
         [Panel::Spectrum(_)] => (1000.0, 600.0),
+        [Panel::Isolux(p)] => p.natural(),
         [_] => (800.0, 800.0),
         _ => {
             let spectra = panels.iter().filter(|p| matches!(p, Panel::Spectrum(_))).count();
@@ -70,6 +71,7 @@ impl Panel {
             Self::Spectrum(p) => &p.title,
             Self::Chromaticity(p) => &p.title,
             Self::ColourVector(p) => &p.title,
+            Self::Isolux(p) => &p.title,
         }
     }
 
@@ -78,6 +80,7 @@ impl Panel {
             Self::Spectrum(p) => p.draw(sheet, area),
             Self::Chromaticity(p) => p.draw(sheet, area),
             Self::ColourVector(p) => p.draw(sheet, area),
+            Self::Isolux(p) => p.draw(sheet, area),
         }
     }
 }

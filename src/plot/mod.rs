@@ -31,11 +31,14 @@ mod axis;
 mod background;
 mod chromaticity;
 mod clip;
+mod colour_map;
 mod colour_vector;
 pub mod conversion;
 mod font;
+pub mod grid;
 mod horseshoe;
 mod inset;
+mod isolux;
 mod labels;
 mod layout;
 mod png;
@@ -46,6 +49,7 @@ mod svg;
 
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
 pub use colour_vector::ColourVectorPanel;
+pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
 
 /// The kind of file.
@@ -68,6 +72,8 @@ pub enum Panel {
     Chromaticity(ChromaticityPanel),
     /// A colour vector graphic after ANSI/IES TM-30.
     ColourVector(Box<ColourVectorPanel>),
+    /// Lines of equal illuminance on a plane.
+    Isolux(Box<IsoluxPanel>),
 }
 
 impl From<SpectrumPanel> for Panel {
@@ -85,6 +91,12 @@ impl From<ChromaticityPanel> for Panel {
 impl From<ColourVectorPanel> for Panel {
     fn from(panel: ColourVectorPanel) -> Self {
         Self::ColourVector(Box::new(panel))
+    }
+}
+
+impl From<IsoluxPanel> for Panel {
+    fn from(panel: IsoluxPanel) -> Self {
+        Self::Isolux(Box::new(panel))
     }
 }
 

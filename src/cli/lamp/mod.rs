@@ -3,6 +3,7 @@
 mod check;
 mod convert;
 mod files;
+mod grid;
 mod load;
 
 use clap::Subcommand;
@@ -24,6 +25,8 @@ pub(super) enum LampCommand {
     Cu(FilesArgs),
     /// Another format: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33-23), by the name of the output.
     Convert(convert::ConvertArgs),
+    /// Illuminance of one or many luminaires on a plane: figures, table, isolux plot, picture.
+    Grid(Box<grid::GridArgs>),
 }
 
 pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
@@ -37,5 +40,6 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         }
         LampCommand::Check(a) => check::check(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
+        LampCommand::Grid(a) => grid::grid(&a, talk),
     }
 }
