@@ -1,5 +1,7 @@
 //! Mean luminance of the luminous opening.
 
+use glam::DVec3;
+
 use super::distribution::System;
 use super::model::{Body, Kind, Luminaire, Shape};
 use super::unavailable::Unavailable;
@@ -19,19 +21,24 @@ use super::unavailable::Unavailable;
 /// CIE 117:1995, eq. 4.4 and EN 13032-2 (the opening as a box); IES LM-63-19 (shapes).
 #[must_use]
 pub fn projected_area_m2(body: &Body, c_deg: f64, gamma_deg: f64) -> f64 {
-    use std::f64::consts::FRAC_PI_4;
     let ((sin_c, cos_c), (sin_g, cos_g)) = (c_deg.to_radians().sin_cos(), gamma_deg.to_radians().sin_cos());
-    let (x, y, z) = ((cos_c * sin_g).abs(), (sin_c * sin_g).abs(), cos_g.abs());
+    projected_area_towards_m2(body, DVec3::new(cos_c * sin_g, sin_c * sin_g, -cos_g))
+}
+
+/// The same for a direction as a unit vector in the luminaire's frame.
+pub(super) fn projected_area_towards_m2(body: &Body, direction: DVec3) -> f64 {
+    use std::f64::consts::FRAC_PI_4;
+    let DVec3 { x, y, z } = direction.abs();
     let Body { shape, length_m: l, width_m: w, height_m: h } = *body;
-    let high = |like: f64| if h > 0.0 { h } else { like };
+    let round_h = body.round_height_m();
     match shape {
         Shape::Point => 0.0,
         Shape::Rectangle => l * w * z + h * (l * x + w * y),
         Shape::Round if l == 0.0 || w == 0.0 => FRAC_PI_4 * h * (l * x + w * y),
         Shape::Round => FRAC_PI_4 * l * w * z + h * (w * y).hypot(l * x),
-        Shape::Sphere => FRAC_PI_4 * (w * l * z).hypot(high(w.min(l)) * (l * x).hypot(w * y)),
-        Shape::CylinderAlongC0 => w * (high(l) * y).hypot(l * z) + FRAC_PI_4 * l * high(l) * x,
-        Shape::CylinderAlongC90 => l * (high(w) * x).hypot(w * z) + FRAC_PI_4 * w * high(w) * y,
+        Shape::Sphere => FRAC_PI_4 * (w * l * z).hypot(round_h * (l * x).hypot(w * y)),
+        Shape::CylinderAlongC0 => w * (round_h * y).hypot(l * z) + FRAC_PI_4 * l * round_h * x,
+        Shape::CylinderAlongC90 => l * (round_h * x).hypot(w * z) + FRAC_PI_4 * w * round_h * y,
     }
 }
 

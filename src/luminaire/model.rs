@@ -61,6 +61,19 @@ pub struct Body {
     pub height_m: f64,
 }
 
+impl Body {
+    /// Height of a sphere or a lying cylinder, m: without one a cylinder is as high as it is wide across its axis, a sphere as its
+    /// shorter side.
+    pub(super) fn round_height_m(&self) -> f64 {
+        match self.shape {
+            _ if self.height_m > 0.0 => self.height_m,
+            Shape::CylinderAlongC0 => self.length_m,
+            Shape::CylinderAlongC90 => self.width_m,
+            _ => self.width_m.min(self.length_m),
+        }
+    }
+}
+
 /// One set of lamps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LampSet {

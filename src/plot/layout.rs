@@ -24,6 +24,7 @@ fn natural(panels: &[Panel]) -> (f64, f64) {
         [Panel::ColourAngle(_)] => (1000.0, 720.0),
         [Panel::Spectrum(_) | Panel::Cartesian(_)] => (1000.0, 600.0),
         [Panel::Figures(f)] => (1000.0, f.height(1000.0)),
+        [Panel::Isolux(p)] => p.natural(),
         [_] => (800.0, 800.0),
         _ => (SHEET, rows(panels).iter().map(|r| r.height).sum()),
     }
@@ -95,6 +96,7 @@ impl Panel {
             Self::Isocandela(p) => &p.title,
             Self::Cone(p) => &p.title,
             Self::Figures(p) => &p.title,
+            Self::Isolux(p) => &p.title,
         }
     }
 
@@ -110,6 +112,7 @@ impl Panel {
             Self::Isocandela(p) => p.draw(sheet, area),
             Self::Cone(p) => p.draw(sheet, area),
             Self::Figures(p) => p.draw(sheet, area),
+            Self::Isolux(p) => p.draw(sheet, area),
         }
     }
 }

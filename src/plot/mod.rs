@@ -34,14 +34,17 @@ mod cartesian;
 mod chromaticity;
 mod clip;
 pub mod colour_angle;
+mod colour_map;
 mod colour_vector;
 mod cone;
 pub mod conversion;
 mod figures;
 mod font;
+pub mod grid;
 mod horseshoe;
 mod inset;
 mod isocandela;
+mod isolux;
 mod labels;
 mod layout;
 pub mod luminaire;
@@ -61,6 +64,7 @@ pub use colour_vector::ColourVectorPanel;
 pub use cone::{ConePanel, ConeStep};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
+pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};
 pub use polar::PolarPanel;
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
 pub use web::WebPanel;
@@ -99,6 +103,8 @@ pub enum Panel {
     Cone(ConePanel),
     /// Key figures in columns.
     Figures(FiguresPanel),
+    /// Lines of equal illuminance on a plane.
+    Isolux(Box<IsoluxPanel>),
 }
 
 macro_rules! panels {
@@ -126,6 +132,12 @@ panels! {
 impl From<ColourVectorPanel> for Panel {
     fn from(panel: ColourVectorPanel) -> Self {
         Self::ColourVector(Box::new(panel))
+    }
+}
+
+impl From<IsoluxPanel> for Panel {
+    fn from(panel: IsoluxPanel) -> Self {
+        Self::Isolux(Box::new(panel))
     }
 }
 

@@ -3,6 +3,7 @@
 mod compare;
 mod convert;
 mod files;
+mod grid;
 mod interpolation;
 mod load;
 mod plot;
@@ -43,6 +44,8 @@ pub(super) enum LampCommand {
     Convert(Box<convert::ConvertArgs>),
     /// Diagrams as .svg or .png: a sheet as in a maker's datasheet, or one diagram; several files together or each for itself.
     Plot(plot::PlotArgs),
+    /// Illuminance of one or many luminaires on a plane: figures, table, isolux plot, picture.
+    Grid(Box<grid::GridArgs>),
 }
 
 /// Arguments of `lamp info`.
@@ -108,5 +111,6 @@ pub(super) fn run(command: LampCommand, talk: Talk) -> Result<(), Failure> {
         LampCommand::Spectral(a) => spectral::spectral(&a, talk),
         LampCommand::Convert(a) => convert::convert(&a, talk),
         LampCommand::Plot(a) => plot::plot(&a, talk),
+        LampCommand::Grid(a) => grid::grid(&a, talk),
     }
 }
