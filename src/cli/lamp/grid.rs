@@ -1,5 +1,7 @@
 //! `lamp grid`: illuminance of placed luminaires on a plane, as table, isolux plot and picture.
 
+mod layout;
+
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +14,7 @@ use super::load::load;
 use crate::cli::notes::Notes;
 use crate::cli::output::{self, Sink};
 use crate::cli::{Failure, Talk};
-use crate::finding::Finding;
+use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::grid::{
     Error, Illuminance, Placed, Plane, PointsAt, Receiver, Settings, has_opening, illuminance, standard_step_m,
@@ -33,18 +35,26 @@ const DRAWN_CELLS: f64 = 120.0;
 #[command(
     after_help = "Lengths are in metres, angles in degrees; z points up, C0 of an unturned luminaire towards +x, C90 towards +y.\n\n\
 Examples:\n  photopic lamp grid spot.ies --height 3\n  \
-photopic lamp grid downlight.ldt --height 2.8 --array 4x3 --spacing 1.8,2 --plane '0,0 7.2,6 at 0.8' --plot room.svg\n  \
-photopic lamp grid road.ldt --at 0,0,8 --tilt 10 --tilt-towards 90 --plane '-15,0 15,7' --picture road.png"
+photopic lamp grid downlight.ldt --at 3.6,3,2.8 --array 4x3 --spacing 1.8,2 --plane '0,0 7.2,6 at 0.8' --plot room.svg\n  \
+photopic lamp grid road.ldt --at 0,0,8 --tilt 10 --tilt-towards 90 --plane '-15,0 15,7' --picture road.png\n  \
+photopic lamp grid --layout room.toml --plane '0,0 6,4 at 0.8'\n\n\
+A layout file (TOML) has a table [[luminaire]] for each sort of luminaire:\n  \
+file = \"panel.ldt\"                   beside the layout file\n  \
+at_m = [[1, 1, 2.8], [3, 1, 2.8]]    one place or many\n  \
+rotate_deg, tilt_deg, tilt_towards_deg, spin_deg, dim; or aim_m = [2, 2, 0] instead of rotation and tilt"
 )]
 pub(in crate::cli) struct GridArgs {
     /// Lamp files; `-` is standard input.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "layout", value_name = "FILE")]
     files: Vec<String>,
+    /// Luminaires, places and orientations from a file (TOML, see below).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "at", "height", "array", "aim", "rotate", "tilt", "tilt_towards", "spin", "dim"])]
+    layout: Option<PathBuf>,
     /// Where a luminaire hangs (its photometric centre); repeated, one per file, or many for a single file.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector, conflicts_with = "height")]
     at: Vec<DVec3>,
     /// Hang all luminaires at 0,0,HEIGHT.
-    #[arg(long, value_name = "M", required_unless_present = "at")]
+    #[arg(long, value_name = "M", required_unless_present_any = ["at", "layout"])]
     height: Option<f64>,
     /// An array of N × M luminaires along x and y, its middle at the place given.
     #[arg(long, value_name = "NxM", value_parser = counts, requires = "spacing")]
@@ -168,12 +178,16 @@ fn corners(text: &str) -> Result<[DVec3; 3], String> {
 pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
     let a = arguments;
     let (plot, picture) = (target(a.plot.as_deref(), "--plot")?, target(a.picture.as_deref(), "--picture")?);
-    let mut sink = Sink::open(a.output.as_deref(), &a.files)?;
-    let notes = Notes::new(&a.files, talk);
+    let laid = a.layout.as_deref().map(layout::read).transpose()?;
+    let files = laid.as_ref().map_or(&a.files, |l| &l.files);
+    let mut read: Vec<String> = files.clone();
+    read.extend(a.layout.iter().map(|l| l.display().to_string()));
+    let mut sink = Sink::open(a.output.as_deref(), &read)?;
+    let notes = Notes::new(files, talk);
     let mut inputs = Vec::new();
     let mut findings = Vec::new();
     let mut lamps = Vec::new();
-    for path in &a.files {
+    for path in files {
         let loaded = load(path, a.repair);
         inputs.push(loaded.input);
         let file = loaded.file.map_err(|(message, _)| Failure::Message(message))?;
@@ -181,10 +195,15 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
         lamps.push(file.value.luminaire);
         if !lamps.last().is_some_and(has_opening) {
             let message = "the luminous opening is not known: the luminaire is taken as a point at any distance";
-            findings.push(Finding::info("L601", message).at(crate::finding::Location::default().in_file(path)));
+            findings.push(Finding::info("L601", message).at(Location::default().in_file(path)));
         }
     }
-    let placed = place(a, &lamps)?;
+    let placed = match &laid {
+        Some(laid) => {
+            laid.luminaires.iter().map(|(file, p)| Placed { luminaire: &lamps[*file], placement: *p }).collect()
+        }
+        None => place(a, &lamps)?,
+    };
     let plane = plane(a, &placed)?;
     let receiver = match a.receiver {
         ReceiverKind::Planar => Receiver::Planar(a.facing.unwrap_or_else(|| plane.normal())),
@@ -220,11 +239,11 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
         } else {
             None
         };
-        let title = title(a, &lamps);
+        let title = title(files, &lamps);
         let panel = isolux_panel(&title, &result, finer.as_ref().unwrap_or(&result), &placed, filled);
         let bytes =
             draw(&[panel.into()], None, format).map_err(|e| Failure::Message(format!("{}: {e}", path.display())))?;
-        output::write_file(path, &bytes, &a.files)?;
+        output::write_file(path, &bytes, &read)?;
     }
     let bytes = if a.json {
         let luminaires: Vec<_> = placed
@@ -244,8 +263,13 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
     } else if a.csv {
         csv(&result).into_bytes()
     } else {
-        format!("{}: {} luminaires\n\n{}", title(a, &lamps), placed.len(), report::grid_text(&result, a.maintenance))
-            .into_bytes()
+        format!(
+            "{}: {} luminaires\n\n{}",
+            title(files, &lamps),
+            placed.len(),
+            report::grid_text(&result, a.maintenance)
+        )
+        .into_bytes()
     };
     sink.write_all(&bytes)?;
     sink.finish(true)
@@ -255,8 +279,8 @@ fn message(error: Error) -> Failure {
     Failure::Message(error.to_string())
 }
 
-fn title(a: &GridArgs, lamps: &[Luminaire]) -> String {
-    let names = a.files.iter().zip(lamps).map(|(path, lamp)| {
+fn title(files: &[String], lamps: &[Luminaire]) -> String {
+    let names = files.iter().zip(lamps).map(|(path, lamp)| {
         let file = Path::new(path).file_name().map_or_else(|| path.clone(), |n| n.to_string_lossy().into_owned());
         if lamp.name.trim().is_empty() { file } else { lamp.name.trim().to_owned() }
     });

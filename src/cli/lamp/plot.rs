@@ -12,6 +12,7 @@ use crate::cli::output::{self, Sink};
 use crate::cli::{Failure, Talk};
 use crate::luminaire::Luminaire;
 use crate::luminaire::beam::{self, BEAM_FRACTION, Definition};
+use crate::plot::grid::isolux_beneath;
 use crate::plot::luminaire::{
     Drawn, Error, View, cartesian_panel, cone_panel, figures_panel, isocandela_panel, polar_panel, web_panel,
 };
@@ -43,6 +44,9 @@ pub(in crate::cli) struct PlotArgs {
     /// Distances of the cone diagram, metres; without it five round ones.
     #[arg(long, value_name = "METRES", value_delimiter = ',', value_parser = distance)]
     distances: Vec<f64>,
+    /// Mounting height of the isolux diagram above its floor, metres.
+    #[arg(long, value_name = "METRES", default_value = "3", value_parser = distance)]
+    height: f64,
     /// Width and height in pixels, such as 1200x900.
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
@@ -69,6 +73,8 @@ enum Kind {
     Isocandela,
     /// Illuminance on the axis and beam width at distances.
     Cone,
+    /// Lines of equal illuminance on the floor beneath, at --height.
+    Isolux,
     /// Everything that the lamp has, on one sheet.
     All,
 }
@@ -214,41 +220,54 @@ fn draw(lamps: &[Lamp], arguments: &PlotArgs, view: &View, format: Format) -> Re
     let drawn: Vec<Drawn<'_>> =
         lamps.iter().enumerate().map(|(i, l)| Drawn { name: name(i), luminaire: &l.luminaire }).collect();
     let panels = match drawn.as_slice() {
-        [one] => alone(one, arguments.kind, view).map_err(|e| format!("{}: {e}", lamps[0].path))?,
+        [one] => alone(one, arguments, view).map_err(|e| format!("{}: {e}", lamps[0].path))?,
         several => compared(several, arguments.kind, view)?,
     };
     plot::draw(&panels, arguments.size, format).map_err(|e| e.to_string())
 }
 
 /// The panels of one lamp.
-fn alone(lamp: &Drawn<'_>, kind: Kind, view: &View) -> Result<Vec<Panel>, Error> {
+fn alone(lamp: &Drawn<'_>, arguments: &PlotArgs, view: &View) -> Result<Vec<Panel>, String> {
     let one = std::slice::from_ref(lamp);
     let named = View { named: true, ..view.clone() };
-    Ok(match kind {
-        Kind::Polar => vec![polar_panel(one, &named)?.into()],
-        Kind::Cartesian => vec![cartesian_panel(one, &named)?.into()],
-        Kind::Web => vec![web_panel(lamp, &named)?.into()],
-        Kind::Isocandela => vec![isocandela_panel(lamp, &named)?.into()],
-        Kind::Cone => vec![cone_panel(lamp, &named)?.into()],
+    let said = |e: Error| e.to_string();
+    Ok(match arguments.kind {
+        Kind::Polar => vec![polar_panel(one, &named).map_err(said)?.into()],
+        Kind::Cartesian => vec![cartesian_panel(one, &named).map_err(said)?.into()],
+        Kind::Web => vec![web_panel(lamp, &named).map_err(said)?.into()],
+        Kind::Isocandela => vec![isocandela_panel(lamp, &named).map_err(said)?.into()],
+        Kind::Cone => vec![cone_panel(lamp, &named).map_err(said)?.into()],
+        Kind::Isolux => vec![isolux(lamp, &format!("{}: ", lamp.name), arguments.height)?],
         Kind::Sheet => {
             let second = match cone_panel(lamp, view) {
                 Ok(cone) if !view.logarithmic && cone_says_more(lamp.luminaire) => cone.into(),
-                _ => cartesian_panel(one, view)?.into(),
+                _ => cartesian_panel(one, view).map_err(said)?.into(),
             };
-            vec![figures_panel(lamp).into(), polar_panel(one, view)?.into(), second]
+            vec![figures_panel(lamp).into(), polar_panel(one, view).map_err(said)?.into(), second]
         }
         Kind::All => {
             let mut panels = vec![
                 figures_panel(lamp).into(),
-                polar_panel(one, view)?.into(),
-                cartesian_panel(one, view)?.into(),
-                isocandela_panel(lamp, view)?.into(),
-                web_panel(lamp, view)?.into(),
+                polar_panel(one, view).map_err(said)?.into(),
+                cartesian_panel(one, view).map_err(said)?.into(),
+                isocandela_panel(lamp, view).map_err(said)?.into(),
+                web_panel(lamp, view).map_err(said)?.into(),
             ];
+            panels.extend(isolux(lamp, "", arguments.height));
             panels.extend(cone_panel(lamp, view).map(Panel::from));
             panels
         }
     })
+}
+
+/// The isolux diagram on the floor beneath the lamp.
+fn isolux(lamp: &Drawn<'_>, before: &str, height_m: f64) -> Result<Panel, String> {
+    let title = format!("{before}isolux diagram, {height_m} m above the floor");
+    let panel = isolux_beneath(lamp.luminaire, &title, height_m, false).map_err(|e| e.to_string())?;
+    if panel.lines.is_empty() {
+        return Err("no light falls on a floor beneath the luminaire; expected one that shines down".to_owned());
+    }
+    Ok(panel.into())
 }
 
 /// Beams narrower than this are a needle in the polar diagram: the Cartesian one shows them, degrees.
@@ -272,7 +291,7 @@ fn compared(lamps: &[Drawn<'_>], kind: Kind, view: &View) -> Result<Vec<Panel>, 
         Kind::Sheet => Ok(vec![polar()?, cartesian()?]),
         Kind::Polar => Ok(vec![polar()?]),
         Kind::Cartesian => Ok(vec![cartesian()?]),
-        Kind::Web | Kind::Isocandela | Kind::Cone | Kind::All => Err(format!(
+        Kind::Web | Kind::Isocandela | Kind::Cone | Kind::Isolux | Kind::All => Err(format!(
             "{} files in one picture of this kind; expected one file, or a folder as output, or --kind polar or cartesian",
             lamps.len()
         )),
