@@ -1,0 +1,1 @@
+//! Image files; one folder or file per format.

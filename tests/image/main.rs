@@ -1,0 +1,6 @@
+//! Spectral images: conversion, formats, and files written by other programs.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod agreement;
