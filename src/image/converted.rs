@@ -44,10 +44,7 @@ impl<S: Source> Source for Converted<S> {
             let (plan, width) = (&self.plan, piece.width);
             let rows =
                 self.samples.par_chunks_exact(inputs * width).zip(self.sums.par_chunks_exact_mut(outputs * width));
-            rows.for_each(|(row, sums)| {
-                plan.weights.apply(row, width, sums, width);
-                encode(plan, sums);
-            });
+            rows.for_each(|(row, sums)| plan.row(row, width, sums));
             for (y, sums) in self.sums.chunks_exact(outputs * width).enumerate() {
                 for (k, channel) in channels.iter().enumerate() {
                     let start = ((piece.y - region.y + y) * channels.len() + k) * region.width + piece.x - region.x;
@@ -60,12 +57,5 @@ impl<S: Source> Source for Converted<S> {
 
     fn findings(&self) -> Vec<Finding> {
         self.source.findings()
-    }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
-fn encode(plan: &Plan, sums: &mut [f32]) {
-    if plan.encoding != crate::colorimetry::rgb::Encoding::Linear {
-        sums.iter_mut().for_each(|v| *v = plan.encoding.encode(f64::from(*v)) as f32);
     }
 }

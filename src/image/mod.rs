@@ -13,6 +13,7 @@
 //!
 //! Pixels are `f32`, as cameras and renderers deliver them; weights and sums are `f64` ([`kernel`]).
 
+pub mod beside;
 pub mod converted;
 pub mod description;
 pub mod error;
@@ -21,12 +22,15 @@ pub mod kernel;
 pub mod memory;
 pub mod plan;
 pub mod source;
+pub mod statistics;
 pub mod target;
 
+pub use beside::Beside;
 pub use converted::Converted;
 pub use description::{Channel, Content, Description, Meaning, RgbSpace};
 pub use error::{Error, ErrorKind};
 pub use memory::Memory;
 pub use plan::{Plan, PlanError, Settings};
 pub use source::{Region, Source};
+pub use statistics::Statistics;
 pub use target::Target;

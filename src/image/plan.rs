@@ -228,6 +228,18 @@ impl Plan {
         Ok(integrand)
     }
 
+    /// Converts one row: the samples of [`Plan::channels`] one channel after the other, to one plane after the other.
+    ///
+    /// # Panics
+    /// Where `row` or `out` is too short.
+    #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
+    pub fn row(&self, row: &[f32], width: usize, out: &mut [f32]) {
+        self.weights.apply(row, width, out, width);
+        if self.encoding != Encoding::Linear {
+            out.iter_mut().for_each(|v| *v = self.encoding.encode(f64::from(*v)) as f32);
+        }
+    }
+
     /// The image that comes out, without its pixels.
     #[must_use]
     pub fn description(&self) -> &Description {

@@ -4,3 +4,5 @@
 mod common;
 
 mod agreement;
+mod envi;
+mod exr;

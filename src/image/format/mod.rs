@@ -1,1 +1,5 @@
 //! Image files; one folder or file per format.
+
+pub mod envi;
+pub mod exr;
+pub mod npy;
