@@ -329,6 +329,10 @@ fn coverage(target: &Target, integrand: &Integrand) -> Option<Finding> {
     Some(Finding::info("I010", message))
 }
 
+/// Attributes that speak of the bands and mean nothing without them.
+const OF_BANDS: [&str; 4] =
+    ["spectralLayoutVersion", "emissiveUnits", "polarisationHandedness", "photopic:samples_unit"];
+
 /// The image that comes out: channels with units, and the contract as attributes.
 fn output(
     image: &Description,
@@ -347,7 +351,7 @@ fn output(
     let channels =
         (0..).zip(target.channel_names()).map(|(k, name)| Channel::new(name, unit.clone(), meaning(k))).collect();
     let mut out = Description::planes(image.width, image.height, channels);
-    out.attributes.clone_from(&image.attributes);
+    out.attributes.extend(image.attributes.iter().filter(|(name, _)| !OF_BANDS.contains(&name.as_str())).cloned());
     if let Target::Rgb { space, encoded } = target {
         let white = match quantity {
             Some(Quantity::Relative) => None,

@@ -135,8 +135,8 @@ fn reflectance_under_an_illuminant_is_the_ratio_of_two_lights() {
     };
     let white = of(wavelengths.iter().map(|w| at(*w)).collect());
     let lit = of(wavelengths.iter().zip(pixel(&image, 4, 1)).map(|(w, r)| at(*w) * r).collect());
-    for k in 0..3 {
-        close(xyz.at(4, 1, k), lit[k] / white[1], "luminance factor");
+    for (k, lit) in lit.into_iter().enumerate() {
+        close(xyz.at(4, 1, k), lit / white[1], "luminance factor");
     }
     // The perfect diffuser is white in RGB, whatever light falls on it.
     let a = named::source("A", photopic::constants::SecondRadiation::Its90).expect("a name").spectrum;

@@ -4,5 +4,10 @@
 mod common;
 
 mod agreement;
+mod cli;
 mod envi;
 mod exr;
+mod kernel;
+mod npy;
+mod stack;
+mod streaming;

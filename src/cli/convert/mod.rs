@@ -26,7 +26,8 @@ mod picture;
 mod stream;
 mod writer;
 
-pub(super) use args::ConvertArgs;
+pub(super) use args::{ConvertArgs, RuleArg, positive};
+pub(super) use measures::range_nm;
 
 /// Inputs opened and converted at a time.
 const INPUTS_AT_ONCE: usize = 64;

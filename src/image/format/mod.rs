@@ -3,3 +3,4 @@
 pub mod envi;
 pub mod exr;
 pub mod npy;
+pub mod stack;

@@ -27,7 +27,29 @@ pub fn open<R: Read + Seek + Send>(
     wavelengths_nm: Vec<f64>,
     options: Options,
 ) -> Result<Checked<Envi<R>>, Error> {
-    let (text, offset) = header_text(&mut input)?;
+    let mut header = header(&mut input)?;
+    let bands = header.bands;
+    if !wavelengths_nm.is_empty() && wavelengths_nm.len() != bands {
+        let expected = format!("{bands}, one for each channel of the array");
+        let kind = ErrorKind::Count { found: wavelengths_nm.len(), field: "the wavelengths".to_owned(), expected };
+        return Err(kind.into());
+    }
+    header.wavelengths = wavelengths_nm;
+    header.wavelength_unit = Some(crate::spectrum::WavelengthUnit::Nanometre);
+    open_numbers(header, input, options)
+}
+
+/// The number of channels of an array.
+///
+/// # Errors
+/// As [`open`].
+pub fn channels(input: &mut (impl Read + Seek)) -> Result<usize, Error> {
+    header(input).map(|h| h.bands)
+}
+
+/// What the header says, as one of ENVI's.
+fn header(input: &mut (impl Read + Seek)) -> Result<Header, Error> {
+    let (text, offset) = header_text(input)?;
     let (data_type, byte_order) = element(field(&text, "descr")?)?;
     if field(&text, "fortran_order")? != "False" {
         let found = "an array in Fortran order".to_owned();
@@ -49,16 +71,9 @@ pub fn open<R: Read + Seek + Send>(
             return Err(ErrorKind::Value { found: shape.to_owned(), field: "`shape`".to_owned(), expected }.into());
         }
     };
-    if !wavelengths_nm.is_empty() && wavelengths_nm.len() != bands {
-        let expected = format!("{bands}, one for each channel of the array {shape}");
-        let kind = ErrorKind::Count { found: wavelengths_nm.len(), field: "the wavelengths".to_owned(), expected };
-        return Err(kind.into());
-    }
     let mut header = Header::new(samples, lines, bands, data_type);
     (header.interleave, header.byte_order, header.offset) = (Interleave::Bip, byte_order, offset);
-    header.wavelengths = wavelengths_nm;
-    header.wavelength_unit = Some(crate::spectrum::WavelengthUnit::Nanometre);
-    open_numbers(header, input, options)
+    Ok(header)
 }
 
 /// The dictionary, and where the numbers begin.
