@@ -5,12 +5,17 @@
 //! `f64` nothing is left but the rounding of the samples and of the result to `f32`, 6e-8 each. Products and sums are rounded
 //! one after the other on every processor, so that results are the same bits everywhere.
 //!
-//! Pixels go through in blocks whose sums stay in vector registers. The instruction set is chosen at run time (crate `pulp`).
+//! One output reads its channels one after the other, in one stream from memory: as fast as reading can be. Several outputs are
+//! summed in one pass over short runs of four channels at a time, which loads and stores their sums less often; longer runs and
+//! single pixels of all channels, which lie a power of two apart, were slower. The instruction set is chosen at run time (crate
+//! `pulp`).
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Pixels whose sums are kept in registers at a time.
-const LANES: usize = 8;
+/// Pixels of which the sums of one output are kept at a time, in the first cache.
+const BLOCK: usize = 1024;
+/// The same of several outputs.
+const SHORT_BLOCK: usize = 256;
 /// Outputs summed in one pass over a row; more take further passes, over samples that the cache then holds.
 const OUTPUTS: usize = 4;
 
@@ -72,45 +77,66 @@ impl WithSimd for Sums<'_> {
             let out = &mut self.out[first * self.stride..];
             let outputs = (self.weights.outputs - first).min(OUTPUTS);
             match outputs {
-                1 => sums::<1>(group, self.row, self.width, out, self.stride),
-                2 => sums::<2>(group, self.row, self.width, out, self.stride),
-                3 => sums::<3>(group, self.row, self.width, out, self.stride),
-                _ => sums::<OUTPUTS>(group, self.row, self.width, out, self.stride),
+                1 => one(group, self.row, self.width, out),
+                2 => several::<2>(group, self.row, self.width, out, self.stride),
+                3 => several::<3>(group, self.row, self.width, out, self.stride),
+                _ => several::<OUTPUTS>(group, self.row, self.width, out, self.stride),
             }
             first += outputs;
         }
     }
 }
 
-/// `N` outputs of one row.
+/// One output of a row.
 #[inline(always)]
-fn sums<const N: usize>(weights: &[f64], row: &[f32], width: usize, out: &mut [f32], stride: usize) {
-    let (weights, _) = weights.as_chunks::<N>();
-    let whole = width / LANES * LANES;
-    for x in (0..whole).step_by(LANES) {
-        let mut sums = [[0.0_f64; LANES]; N];
-        for (weight, channel) in weights.iter().zip(row.chunks_exact(width)) {
-            let samples = channel[x..].first_chunk::<LANES>().unwrap_or(&[0.0; LANES]);
-            let samples = samples.map(f64::from);
-            for (sum, weight) in sums.iter_mut().zip(weight) {
-                for (sum, sample) in sum.iter_mut().zip(samples) {
-                    *sum += weight * sample;
-                }
+fn one(weights: &[f64], row: &[f32], width: usize, out: &mut [f32]) {
+    for x in (0..width).step_by(BLOCK) {
+        let count = BLOCK.min(width - x);
+        let mut sums = [0.0_f64; BLOCK];
+        for (channel, weight) in row.chunks_exact(width).zip(weights) {
+            for (sum, sample) in sums.iter_mut().zip(&channel[x..x + count]) {
+                *sum += weight * f64::from(*sample);
             }
+        }
+        store(&sums[..count], &mut out[x..]);
+    }
+}
+
+/// `N` outputs of a row.
+#[inline(always)]
+fn several<const N: usize>(weights: &[f64], row: &[f32], width: usize, out: &mut [f32], stride: usize) {
+    let (weights, _) = weights.as_chunks::<N>();
+    let (fours, rest) = weights.as_chunks::<4>();
+    for x in (0..width).step_by(SHORT_BLOCK) {
+        let count = SHORT_BLOCK.min(width - x);
+        let channel = |c: usize| &row[c * width + x..][..count];
+        let mut sums = [[0.0_f64; SHORT_BLOCK]; N];
+        for (i, weights) in fours.iter().enumerate() {
+            add(&mut sums, [channel(4 * i), channel(4 * i + 1), channel(4 * i + 2), channel(4 * i + 3)], weights);
+        }
+        for (i, weights) in rest.iter().enumerate() {
+            add(&mut sums, [channel(4 * fours.len() + i)], std::array::from_ref(weights));
         }
         for (k, sums) in sums.iter().enumerate() {
-            store(sums, &mut out[k * stride + x..]);
+            store(&sums[..count], &mut out[k * stride + x..]);
         }
     }
-    for x in whole..width {
-        let mut sums = [0.0_f64; N];
-        for (weight, channel) in weights.iter().zip(row.chunks_exact(width)) {
-            for (sum, weight) in sums.iter_mut().zip(weight) {
-                *sum += weight * f64::from(channel[x]);
+}
+
+/// Adds `C` channels of a block, one after the other. The loop over pixels is the one that becomes vector code.
+#[inline(always)]
+fn add<const N: usize, const C: usize>(
+    sums: &mut [[f64; SHORT_BLOCK]; N],
+    channels: [&[f32]; C],
+    weights: &[[f64; N]; C],
+) {
+    for x in 0..channels[0].len().min(SHORT_BLOCK) {
+        for k in 0..N {
+            let mut sum = sums[k][x];
+            for c in 0..C {
+                sum += weights[c][k] * f64::from(channels[c][x]);
             }
-        }
-        for (k, sum) in sums.iter().enumerate() {
-            store(&[*sum], &mut out[k * stride + x..]);
+            sums[k][x] = sum;
         }
     }
 }
@@ -118,7 +144,5 @@ fn sums<const N: usize>(weights: &[f64], row: &[f32], width: usize, out: &mut [f
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "pixels are f32; sums are rounded once, here")]
 fn store(sums: &[f64], out: &mut [f32]) {
-    for (out, sum) in out.iter_mut().zip(sums) {
-        *out = *sum as f32;
-    }
+    out[..sums.len()].iter_mut().zip(sums).for_each(|(out, sum)| *out = *sum as f32);
 }

@@ -316,7 +316,8 @@ fn attributes(meta: &MetaData, first: usize) -> Vec<(String, String)> {
         })
         .collect();
     let own = &header.own_attributes;
-    for (name, text) in [("comments", &own.comments), ("owner", &own.owner), ("capDate", &own.capture_date)] {
+    let texts = [("comments", &own.comments), ("owner", &own.owner), ("capDate", &own.capture_date)];
+    for (name, text) in texts {
         out.extend(text.as_ref().map(|t| (name.to_owned(), t.to_string())));
     }
     out.sort();

@@ -1,15 +1,15 @@
 //! Writing OpenEXR files: one part, scan lines, ZIP of 16 lines.
 
-use std::io::{Seek, Write};
+use std::collections::BTreeMap;
+use std::io::{Seek, SeekFrom, Write};
 
-use ::exr::block::writer::{ChunksWriter, write_chunks_with};
 use ::exr::block::{BlockIndex, UncompressedBlock};
 use ::exr::math::Vec2;
-use ::exr::meta::BlockDescription;
 use ::exr::meta::attribute::{
-    AttributeValue, ChannelDescription, ChannelList, Chromaticities, LineOrder, SampleType, Text,
+    self, AttributeValue, ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
 };
 use ::exr::meta::header::Header;
+use ::exr::meta::{BlockDescription, Requirements, magic_number};
 use ::exr::prelude::{Compression, f16};
 use rayon::prelude::*;
 
@@ -19,7 +19,7 @@ use crate::finding::Finding;
 use crate::image::description::{Content, Description, Meaning};
 use crate::image::error::{Error, ErrorKind};
 use crate::image::source::{Region, Source, rows_at_once};
-use crate::spectrum::Quantity;
+use crate::spectrum::{Per, Quantity};
 
 /// Lines compressed together.
 const LINES: usize = 16;
@@ -38,46 +38,38 @@ pub enum Depth {
 }
 
 /// Writes an image. Bands of light are written in SI per nm, whatever unit the image has; half-floats never become infinite:
-/// what is too large becomes the largest one, and a finding says how often.
+/// what is too large becomes the largest one, and a finding says how often. The same image gives the same bytes.
 ///
 /// # Errors
 /// Those of the source and of the writer; where two channels have one name.
-pub fn write<W: Write + Seek>(out: W, source: &mut dyn Source, depth: Depth) -> Result<Vec<Finding>, Error> {
+pub fn write<W: Write + Seek>(mut out: W, source: &mut dyn Source, depth: Depth) -> Result<Vec<Finding>, Error> {
     let description = source.description().clone();
     let mut channels = names(&description)?;
     // OpenEXR stores channels by ascending name.
     channels.sort_by(|a, b| a.name.cmp(&b.name));
-    let header = header(&description, &channels, depth)?;
+    let header = header(&description, &channels, depth);
+    let start = out.stream_position()?;
+    out.write_all(&head(&header, &attributes(&description))?)?;
+    let table = out.stream_position()?;
+    let mut offsets = vec![0_u64; header.chunk_count];
+    out.write_all(&vec![0; 8 * offsets.len()])?;
     let mut lost = Lost::default();
-    // The closure may only return the crate's errors; ours waits here.
-    let mut failed = None;
-    let written = write_chunks_with(out, [header].into_iter().collect(), false, |meta, chunks| {
-        let mut pixels = Pixels { source, description: &description, channels: &channels, depth };
-        let rows = rows_at_once(description.width, channels.len(), LINES.max(pixels.source.block().1)).max(LINES);
-        let rows = rows / LINES * LINES;
-        for y in (0..description.height).step_by(rows) {
-            let rows = rows.min(description.height - y);
-            let (blocks, group) = match pixels.blocks(y, rows) {
-                Ok(done) => done,
-                Err(error) => {
-                    failed = Some(error);
-                    return Err(::exr::error::Error::Aborted);
-                }
-            };
-            lost.add(group);
-            let packed: Result<Vec<_>, _> =
-                blocks.into_par_iter().map(|b| b.compress_to_chunk(&meta.headers)).collect();
-            for (k, chunk) in packed?.into_iter().enumerate() {
-                chunks.write_chunk(y / LINES + k, chunk)?;
-            }
+    let rows = rows_at_once(description.width, channels.len(), LINES.max(source.block().1)).max(LINES) / LINES * LINES;
+    let mut pixels = Pixels { source, description: &description, channels: &channels, depth };
+    let headers = std::slice::from_ref(&header);
+    for y in (0..description.height).step_by(rows) {
+        let (blocks, group) = pixels.blocks(y, rows.min(description.height - y))?;
+        lost.add(group);
+        let packed: Result<Vec<_>, _> = blocks.into_par_iter().map(|b| b.compress_to_chunk(headers)).collect();
+        for (chunk, offset) in packed.map_err(refused)?.iter().zip(&mut offsets[y / LINES..]) {
+            *offset = out.stream_position()? - start;
+            chunk.write(&mut out, 1).map_err(refused)?;
         }
-        Ok(())
-    });
-    match (failed, written) {
-        (Some(error), _) => Err(error),
-        (None, Err(error)) => Err(refused(error)),
-        (None, Ok(())) => Ok(lost.findings()),
     }
+    out.seek(SeekFrom::Start(table))?;
+    offsets.iter().try_for_each(|offset| out.write_all(&offset.to_le_bytes()))?;
+    out.flush()?;
+    Ok(lost.findings())
 }
 
 /// A channel to be written.
@@ -125,27 +117,79 @@ fn text(string: &str) -> Text {
     Text::new_or_none(&plain).unwrap_or_else(|| Text::new_or_panic(plain.escape_default().to_string()))
 }
 
-fn header(description: &Description, channels: &[Written], depth: Depth) -> Result<Header, Error> {
+/// What the blocks need to know of the file.
+fn header(description: &Description, channels: &[Written], depth: Depth) -> Header {
     let sample = match depth {
         Depth::Float => SampleType::F32,
         Depth::Half => SampleType::F16,
     };
     let list = channels.iter().map(|c| ChannelDescription::named(text(&c.name), sample)).collect();
-    let size = Vec2(description.width, description.height);
-    let mut header = Header::new(Text::default(), size, list);
-    header.own_attributes.layer_name = None;
-    header.channels = ChannelList::new(header.channels.list);
-    let mut header = header.with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing);
-    let own = &mut header.own_attributes;
-    own.software_name = Some(text(concat!("photopic ", env!("CARGO_PKG_VERSION"))));
+    let header = Header::new(Text::default(), Vec2(description.width, description.height), list);
+    header.with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+}
+
+/// Names of the standard's attributes that are no text.
+const STANDARD: [&str; 38] = [
+    "adoptedNeutral",
+    "altitude",
+    "aperture",
+    "channels",
+    "chromaticities",
+    "chunkCount",
+    "compression",
+    "dataWindow",
+    "deepImageState",
+    "displayWindow",
+    "dwaCompressionLevel",
+    "envmap",
+    "expTime",
+    "far",
+    "fieldOfViewHorizontal",
+    "fieldOfViewVertical",
+    "focus",
+    "framesPerSecond",
+    "isoSpeed",
+    "keyCode",
+    "latitude",
+    "lineOrder",
+    "longitude",
+    "maxSamplesPerPixel",
+    "multiView",
+    "near",
+    "originalDataWindow",
+    "pixelAspectRatio",
+    "preview",
+    "screenWindowCenter",
+    "screenWindowWidth",
+    "tiles",
+    "timeCode",
+    "utcOffset",
+    "version",
+    "whiteLuminance",
+    "worldToCamera",
+    "worldToNDC",
+];
+/// The longest name of an attribute.
+const LONGEST_NAME: usize = 255;
+/// The longest one without a mark in the file's version.
+const LONGEST_PLAIN_NAME: usize = 31;
+
+/// The attributes of the image, by name.
+fn attributes(description: &Description) -> BTreeMap<String, AttributeValue> {
+    let mut out = BTreeMap::new();
+    let string = |value: &str| AttributeValue::Text(text(value));
     for (name, value) in &description.attributes {
-        own.other.insert(text(name), AttributeValue::Text(text(value)));
+        // A field of another format must not stand in the place of an attribute of another type.
+        let taken = STANDARD.contains(&name.as_str()) || ["name", "type"].contains(&name.as_str());
+        let name = if taken { format!("field {name}") } else { name.clone() };
+        if !name.is_empty() && name.len() <= LONGEST_NAME {
+            out.insert(name, string(value));
+        }
     }
-    let mut set = |name: &str, value: &str| {
-        own.other.insert(text(name), AttributeValue::Text(text(value)));
-    };
+    let mut set = |name: &str, value: AttributeValue| out.insert(name.to_owned(), value);
+    set("software", string(concat!("photopic ", env!("CARGO_PKG_VERSION"))));
     if description.content != Content::Planes {
-        set("spectralLayoutVersion", "1.0");
+        set("spectralLayoutVersion", string("1.0"));
     }
     if let Content::Light { quantity, unit: Some(unit) } = &description.content {
         let (layout, ours) = match quantity.unwrap_or(unit.quantity) {
@@ -158,24 +202,59 @@ fn header(description: &Description, channels: &[Written], depth: Depth) -> Resu
             Quantity::Relative => ("", ""),
         };
         if !layout.is_empty() {
-            set("emissiveUnits", layout);
-            let ours =
-                if unit.per == crate::spectrum::Per::Band { ours.replace("/nm", "/band") } else { ours.to_owned() };
-            set("photopic:samples_unit", &ours);
+            let band = unit.per == Per::Band;
+            set("emissiveUnits", string(layout));
+            set("photopic:samples_unit", string(&if band { ours.replace("/nm", "/band") } else { ours.to_owned() }));
         }
     }
-    let unit = description.channels.iter().map(|c| (c.meaning, &c.unit));
     let plain = |m: Meaning| matches!(m, Meaning::Photopic | Meaning::Weighted | Meaning::Tristimulus(_));
-    if let Some((_, unit)) = unit.into_iter().find(|(m, unit)| plain(*m) && !unit.is_empty()) {
-        set("photopic:unit", unit);
+    let unit = description.channels.iter().find(|c| plain(c.meaning) && !c.unit.is_empty());
+    if let Some(channel) = unit {
+        set("photopic:unit", string(&channel.unit));
     }
     if let Some(rgb) = &description.rgb {
         let [red, green, blue] = rgb.space.primaries.map(pair);
         let white = pair(rgb.space.white);
-        header.shared_attributes.chromaticities = Some(Chromaticities { red, green, blue, white });
-        header.own_attributes.white_luminance = rgb.white_luminance.map(narrow);
+        set("chromaticities", AttributeValue::Chromaticities(Chromaticities { red, green, blue, white }));
+        if let Some(luminance) = rgb.white_luminance {
+            set("whiteLuminance", AttributeValue::F32(narrow(luminance)));
+        }
     }
-    Ok(header)
+    out
+}
+
+/// The bytes before the table of offsets: the crate `exr` would write attributes in another order each time.
+fn head(header: &Header, attributes: &BTreeMap<String, AttributeValue>) -> Result<Vec<u8>, Error> {
+    let window = AttributeValue::IntegerBounds(IntegerBounds::from_dimensions(header.layer_size));
+    let required = [
+        ("channels", AttributeValue::ChannelList(header.channels.clone())),
+        ("compression", AttributeValue::Compression(header.compression)),
+        ("dataWindow", window.clone()),
+        ("displayWindow", window),
+        ("lineOrder", AttributeValue::LineOrder(header.line_order)),
+        ("pixelAspectRatio", AttributeValue::F32(1.0)),
+        ("screenWindowCenter", AttributeValue::FloatVec2(Vec2(0.0, 0.0))),
+        ("screenWindowWidth", AttributeValue::F32(1.0)),
+    ];
+    let required = required.into_iter().map(|(name, value)| (name.to_owned(), value));
+    let all: BTreeMap<String, AttributeValue> = attributes.clone().into_iter().chain(required).collect();
+    let channels = header.channels.list.iter().map(|c| c.name.to_string());
+    let long = all.keys().cloned().chain(channels).any(|name| name.len() > LONGEST_PLAIN_NAME);
+    let mut out = Vec::new();
+    magic_number::write(&mut out).map_err(refused)?;
+    let requirements = Requirements {
+        file_format_version: 2,
+        is_single_layer_and_tiled: false,
+        has_long_names: long,
+        has_deep_data: false,
+        has_multiple_layers: false,
+    };
+    requirements.write(&mut out).map_err(refused)?;
+    for (name, value) in &all {
+        attribute::write(text(name).as_slice(), value, &mut out).map_err(refused)?;
+    }
+    out.push(0);
+    Ok(out)
 }
 
 fn pair([x, y]: [f64; 2]) -> Vec2<f32> {
