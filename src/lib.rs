@@ -8,6 +8,7 @@ pub mod conversion;
 pub mod finding;
 pub mod geometry;
 pub mod illuminant;
+pub mod image;
 pub mod luminaire;
 pub mod math;
 pub mod photometry;

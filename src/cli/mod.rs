@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 mod convert;
+mod image;
 mod lamp;
 mod notes;
 mod output;
@@ -41,6 +42,9 @@ struct Talk {
 enum Command {
     /// Spectra into photometric, colour, colour-quality, photon and α-opic figures.
     Convert(Box<convert::ConvertArgs>),
+    /// Spectral images (EXR, ENVI, NPY, stacks of pictures): facts, luminance, XYZ, RGB, other formats.
+    #[command(subcommand)]
+    Image(image::ImageCommand),
     /// Goniometric lamp data (IES LM-63, EULUMDAT, TM-33): facts, findings, trade tables, other formats.
     #[command(subcommand)]
     Lamp(lamp::LampCommand),
@@ -95,6 +99,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let done = match cli.command {
         Command::Convert(arguments) => convert::run(*arguments, cli.talk),
+        Command::Image(command) => image::run(command, cli.talk),
         Command::Lamp(command) => lamp::run(command, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),

@@ -1,7 +1,7 @@
 //! Where results go: standard output, or a file written beside its place and moved there when whole.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::Failure;
@@ -71,6 +71,62 @@ impl Write for Sink {
             Self::Stdout(out) => out.flush(),
             Self::Device(out) => out.flush(),
             Self::File(out, _) => out.flush(),
+        }
+    }
+}
+
+/// A destination that is written in any order: a temporary file, moved or copied to its place when whole.
+pub(super) struct Whole {
+    file: tempfile::NamedTempFile,
+    end: End,
+}
+
+/// Where a [`Whole`] goes.
+enum End {
+    Stdout,
+    /// A pipe or a device, which must not be replaced by a file.
+    Device(PathBuf),
+    Place(PathBuf),
+}
+
+impl Whole {
+    /// Opens the destination, `-` being standard output; one that is an input is refused.
+    pub(super) fn open(path: &Path, inputs: &[String]) -> Result<Self, Failure> {
+        let elsewhere = || tempfile::NamedTempFile::new().map_err(Failure::from);
+        if path == Path::new("-") {
+            return Ok(Self { file: elsewhere()?, end: End::Stdout });
+        }
+        refuse_input(path, inputs)?;
+        match fs::metadata(path) {
+            Ok(m) if m.is_dir() => Err(Failure::Message(format!("{}: is a folder; expected a file", path.display()))),
+            Ok(m) if !m.is_file() => Ok(Self { file: elsewhere()?, end: End::Device(path.to_owned()) }),
+            found => {
+                let place =
+                    if found.is_ok() { fs::canonicalize(path).map_err(|e| cannot(path, &e))? } else { path.to_owned() };
+                Ok(Self { file: beside(&place)?, end: End::Place(place) })
+            }
+        }
+    }
+
+    /// The temporary file.
+    pub(super) fn file(&mut self) -> &mut File {
+        self.file.as_file_mut()
+    }
+
+    /// Moves or copies it to its place.
+    pub(super) fn finish(mut self) -> Result<(), Failure> {
+        let copy = |from: &mut File, to: &mut dyn Write| {
+            from.rewind()?;
+            io::copy(from, to)?;
+            to.flush()
+        };
+        match self.end {
+            End::Stdout => Ok(copy(self.file.as_file_mut(), &mut io::stdout().lock())?),
+            End::Device(path) => {
+                let mut device = OpenOptions::new().write(true).open(&path).map_err(|e| cannot(&path, &e))?;
+                copy(self.file.as_file_mut(), &mut device).map_err(|e| cannot(&path, &e))
+            }
+            End::Place(path) => self.file.persist(&path).map(|_| ()).map_err(|e| cannot(&path, &e.error)),
         }
     }
 }

@@ -38,10 +38,22 @@ pub struct Plan {
     k_m: f64,
 }
 
-fn actions() -> [Weighting; 5] {
+/// The action spectra in the order of [`RECEPTORS`].
+///
+/// # Panics
+/// Where the embedded table is broken, which a test excludes.
+#[must_use]
+pub fn action_spectra() -> [Weighting; 5] {
     let table = tables::get("cie-s026").expect("the action spectra are embedded");
     RECEPTORS
         .map(|column| Weighting::table(table.wavelengths_nm(), table.column(column).expect("one column per receptor")))
+}
+
+/// A contract with its range narrowed to [`RANGE_NM`].
+#[must_use]
+pub fn within_range(contract: &Contract) -> Contract {
+    let (low, high) = contract.range_nm.unwrap_or(RANGE_NM);
+    Contract { rule: contract.rule, range_nm: Some((low.max(RANGE_NM.0), high.min(RANGE_NM.1))) }
 }
 
 /// α-opic efficacies of luminous radiation of D65, W/lm, in the order of [`RECEPTORS`]: summed over the 5 nm table of D65
@@ -65,10 +77,9 @@ impl Plan {
     /// # Errors
     /// [`RuleError`] where the contract's rule does not fit the grid.
     pub fn new(k_m: f64, grid: &Grid, sampling: Sampling, contract: &Contract) -> Result<Self, RuleError> {
-        let (low, high) = contract.range_nm.unwrap_or(RANGE_NM);
-        let contract = Contract { rule: contract.rule, range_nm: Some((low.max(RANGE_NM.0), high.min(RANGE_NM.1))) };
+        let contract = within_range(contract);
         let of = |w: &Weighting| integrate::weights(grid, sampling, w, &contract);
-        let [s, m, l, rod, mel] = actions();
+        let [s, m, l, rod, mel] = action_spectra();
         Ok(Self {
             luminous: of(&Efficiency::Cie1924.weighting())?,
             actions: [of(&s)?, of(&m)?, of(&l)?, of(&rod)?, of(&mel)?],

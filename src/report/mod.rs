@@ -6,5 +6,6 @@
 pub mod conversion;
 pub mod csv;
 pub mod envelope;
+pub mod image;
 pub mod lamp;
 pub mod text;

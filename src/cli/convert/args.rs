@@ -242,7 +242,7 @@ pub(super) enum Group {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum RuleArg {
+pub(in crate::cli) enum RuleArg {
     /// Δλ Σ S w (CIE 15).
     Summation,
     /// Trapezoids of the product.
@@ -251,6 +251,17 @@ pub(super) enum RuleArg {
     Exact,
     /// Σ S w over lines.
     Lines,
+}
+
+impl From<RuleArg> for Rule {
+    fn from(rule: RuleArg) -> Self {
+        match rule {
+            RuleArg::Summation => Self::Summation,
+            RuleArg::Trapezoid => Self::Trapezoid,
+            RuleArg::Exact => Self::Exact,
+            RuleArg::Lines => Self::Lines,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -315,7 +326,7 @@ fn decimal(text: &str) -> Result<char, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn positive(text: &str) -> Result<f64, String> {
     let number = text.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && v.is_finite());
     number.ok_or_else(|| format!("`{text}`; expected a positive number"))
 }
@@ -337,15 +348,7 @@ impl ConvertArgs {
     pub(super) fn settings(&self) -> Settings {
         let (i, c, g) = (&self.integration, &self.colour, &self.geometry);
         Settings {
-            contract: Contract {
-                rule: i.rule.map(|r| match r {
-                    RuleArg::Summation => Rule::Summation,
-                    RuleArg::Trapezoid => Rule::Trapezoid,
-                    RuleArg::Exact => Rule::Exact,
-                    RuleArg::Lines => Rule::Lines,
-                }),
-                range_nm: i.range,
-            },
+            contract: Contract { rule: i.rule.map(Into::into), range_nm: i.range },
             resampling: i.resample.map(|step_nm| Resampling {
                 step_nm,
                 range_nm: i.resample_range,

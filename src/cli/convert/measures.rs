@@ -77,7 +77,7 @@ pub(super) fn time(text: &str) -> Result<f64, String> {
 }
 
 /// `380-780` or `380..780` in nm.
-pub(super) fn range_nm(text: &str) -> Result<(f64, f64), String> {
+pub(in crate::cli) fn range_nm(text: &str) -> Result<(f64, f64), String> {
     let plain = text.trim().trim_end_matches("nm").trim();
     let parts = plain.split_once("..").or_else(|| plain.split_once(['-', '–', ':']));
     parts

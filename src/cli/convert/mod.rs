@@ -25,9 +25,9 @@ mod measures;
 mod picture;
 mod stream;
 
-pub(super) use args::ConvertArgs;
+pub(super) use args::{ConvertArgs, RuleArg, positive};
 pub(super) use input::{Single, single};
-pub(super) use measures::length;
+pub(super) use measures::{length, range_nm};
 pub(super) use picture::format_of;
 
 /// Inputs opened and converted at a time.

@@ -37,8 +37,11 @@ fn same(a: &SpectralUnit, b: &SpectralUnit) -> bool {
 }
 
 impl Scale {
-    /// Settles quantity and unit of spectra with `samples` samples each.
-    pub(super) fn new(
+    /// Settles quantity and unit of spectra with `samples` samples each, from what the file states and the user asks.
+    ///
+    /// # Errors
+    /// [`ErrorKind::UnitMismatch`] where quantity and unit are of different dimensions.
+    pub fn new(
         stated: (Option<Quantity>, Option<&SpectralUnit>),
         asked: (Option<Quantity>, Option<&SpectralUnit>),
         samples: usize,

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Holds what photopic writes of images to other programs: they read it, and make the same of it.
+
+    "$(scripts/venv.sh)" scripts/check_images.py [target/release/photopic]
+
+A cube of 512 x 512 pixels and 31 bands is made with numpy. OpenEXR and colour-science's reader of the layout of Fichet et al.
+read the EXR that photopic makes of it, Spectral Python the ENVI images in each interleave, numpy the arrays; colour-science
+calculates X, Y, Z of 1000 random pixels, and of reflectances under D65. Where ../shared/image stands beside the checkout, its
+files, written by other programs, are read as well. Exit status 1 when a line fails, 2 when nothing could be compared.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import subprocess
+import sys
+import tempfile
+import warnings
+from pathlib import Path
+
+warnings.filterwarnings("ignore")
+
+import numpy as np  # noqa: E402
+
+with contextlib.redirect_stderr(io.StringIO()):
+    import colour  # noqa: E402
+import OpenEXR  # noqa: E402
+import spectral  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent
+SHARED = ROOT.parent / "shared" / "image"
+WAVELENGTHS = np.arange(400.0, 701.0, 10.0)
+SIZE = 512
+K_M = 683.002
+CMFS = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+
+
+class Checks:
+    """Lines of the report, and whether all of them hold."""
+
+    def __init__(self, binary):
+        self.binary, self.failed = binary, 0
+
+    def run(self, *arguments):
+        subprocess.run([self.binary, "-q", "image", *map(str, arguments)], check=True)
+
+    def line(self, what, difference, tolerance):
+        good = difference <= tolerance
+        self.failed += not good
+        print(f"{'ok  ' if good else 'FAIL'}  {what:74} {difference:9.2e}  (≤ {tolerance:.0e})")
+
+
+def write_envi(path, cube, fields):
+    """A little-endian float cube, band-interleaved by pixel, with its header, by hand."""
+    cube.astype("<f4").tofile(path.with_suffix(".img"))
+    lines, samples, bands = cube.shape
+    listed = ", ".join(f"{w:g}" for w in WAVELENGTHS)
+    path.write_text(
+        f"ENVI\nsamples = {samples}\nlines = {lines}\nbands = {bands}\nheader offset = 0\ndata type = 4\n"
+        f"interleave = bip\nbyte order = 0\nwavelength units = Nanometers\nwavelength = {{{listed}}}\n{fields}"
+    )
+
+
+def relative(got, want):
+    """Largest difference relative to the wanted value."""
+    return float(np.max(np.abs(np.asarray(got, float) - want) / np.abs(want)))
+
+
+def weights(illuminant=None):
+    """Weights of the sum over the bands, 10 nm apart, for X, Y, Z."""
+    bars = CMFS.copy().align(colour.SpectralShape(400, 700, 10)).values
+    if illuminant is None:
+        return K_M * 10 * bars
+    light = colour.SDS_ILLUMINANTS[illuminant].copy().align(colour.SpectralShape(400, 700, 10)).values
+    weighted = bars * light[:, None]
+    return weighted / weighted[:, 1].sum()
+
+
+def own_files(checks, folder):
+    rng = np.random.default_rng(20260101)
+    # Radiances over six decades, as scenes have them.
+    cube = (10.0 ** rng.uniform(-4, 2, (SIZE, SIZE, 1)) * rng.uniform(0.1, 1, (SIZE, SIZE, 31))).astype(np.float32)
+    header = folder / "cube.hdr"
+    write_envi(header, cube, "data units = W/m2/sr/nm\n")
+
+    checks.run("convert", header, "-o", folder / "cube.exr", "--to", "cube")
+    channels = OpenEXR.File(str(folder / "cube.exr"), separate_channels=True).channels()
+    names = ["S0." + f"{w:.1f}nm".replace(".", ",") for w in WAVELENGTHS]
+    got = np.dstack([channels[name].pixels for name in names])
+    checks.line("spectral EXR read by OpenEXR, every sample", float(np.max(np.abs(got - cube))), 0.0)
+    rgb = np.dstack([channels[name].pixels for name in "RGB"])
+    matrix = colour.RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB
+
+    components, specification = colour.read_spectral_image_Fichet2021(folder / "cube.exr", additional_data=True)
+    wavelengths, values = components["S0"]
+    order = np.argsort(wavelengths)
+    difference = np.max(np.abs(wavelengths[order] - WAVELENGTHS)) + np.max(np.abs(values[..., order] - cube))
+    checks.line("read by colour-science's Fichet 2021 reader, wavelengths and samples", float(difference), 0.0)
+    assert specification.is_emissive and not specification.is_polarised
+
+    for interleave in ("bsq", "bil", "bip"):
+        out = folder / f"{interleave}.hdr"
+        checks.run("convert", header, "-o", out, "--to", "cube", "--interleave", interleave)
+        image = spectral.open_image(str(out))
+        difference = np.max(np.abs(np.asarray(image.load()) - cube))
+        difference += np.max(np.abs(np.array(image.bands.centers) - WAVELENGTHS))
+        checks.line(f"ENVI {interleave} read by Spectral Python, wavelengths and samples", float(difference), 0.0)
+
+    # 1000 pixels; photopic sums as colour-science does, and both in double precision from the same floats.
+    rows, columns = rng.integers(0, SIZE, (2, 1000))
+    pixels = cube[rows, columns].astype(float)
+    checks.run("convert", header, "-o", folder / "xyz.npy", "--to", "xyz", "--rule", "summation")
+    xyz = np.load(folder / "xyz.npy")[rows, columns]
+    want = colour.msds_to_XYZ(
+        pixels, cmfs=CMFS, k=K_M, method="Integration", shape=colour.SpectralShape(400, 700, 10)
+    )
+    checks.line("XYZ of 1000 pixels against colour.msds_to_XYZ", relative(xyz, want), 1e-6)
+    checks.run("convert", header, "-o", folder / "y.exr", "--rule", "summation")
+    luminance = OpenEXR.File(str(folder / "y.exr"), separate_channels=True).channels()["Y"].pixels
+    checks.line("luminance EXR read by OpenEXR, against Y", relative(luminance[rows, columns], want[:, 1]), 1e-6)
+    checks.run("convert", header, "-o", folder / "rgb.npy", "--to", "srgb", "--rule", "summation")
+    linear = np.load(folder / "rgb.npy")[rows, columns]
+    # Components near zero are differences of larger numbers, and colour's matrix is rounded to 4 digits by its standard.
+    scale = want[:, 1:2]
+    checks.line("linear sRGB, relative to Y", float(np.max(np.abs(linear - want @ matrix.T) / scale)), 5e-4)
+    # Those beside the spectra are of the default rule, exact at 10 nm: they differ from the sum by what the rules do.
+    checks.line("RGB beside the spectra, relative to Y", float(np.max(np.abs(rgb[rows, columns] - linear) / scale)), 0.05)
+
+    header = folder / "leaf.hdr"
+    reflectance = rng.uniform(0.02, 0.98, (SIZE, SIZE, 31))
+    write_envi(header, np.round(reflectance * 10000), "reflectance scale factor = 10000\n")
+    checks.run(
+        "convert", header, "-o", folder / "leaf.npy", "--to", "xyz", "--illuminant", "D65", "--rule", "summation"
+    )
+    got = np.load(folder / "leaf.npy")[rows, columns]
+    want = np.round(reflectance[rows, columns] * 10000) / 10000 @ weights("D65")
+    checks.line("XYZ of reflectance under D65, against numpy on colour's tables", relative(got, want), 1e-6)
+
+
+def shared_files(checks, folder):
+    if not SHARED.is_dir():
+        print("skipped: ../shared/image is not here")
+        return
+    for name, component in (("D65", "S0"), ("Ohta1997", "T"), ("Polarised", "S0")):
+        checks.run("convert", SHARED / f"{name}.exr", "-o", folder / f"{name}.exr", "--to", "cube", "--no-rgb")
+        ours = colour.read_spectral_image_Fichet2021(folder / f"{name}.exr")
+        theirs = colour.read_spectral_image_Fichet2021(SHARED / f"{name}.exr")
+        assert ours.keys() == theirs.keys(), f"{name}: {ours.keys()} {theirs.keys()}"
+        difference = 0.0
+        for key in theirs:
+            a, b = (np.argsort(c[key][0]) for c in (ours, theirs))
+            difference += float(np.max(np.abs(ours[key][0][a] - theirs[key][0][b])))
+            difference += float(np.max(np.abs(ours[key][1][..., a] - theirs[key][1][..., b])))
+        checks.line(f"{name}.exr through photopic and back to colour-science ({component})", difference, 0.0)
+
+
+def main():
+    checks = Checks(Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "target" / "release" / "photopic").resolve())
+    with tempfile.TemporaryDirectory() as folder:
+        own_files(checks, Path(folder))
+        shared_files(checks, Path(folder))
+    print("all hold" if not checks.failed else f"{checks.failed} fail")
+    sys.exit(1 if checks.failed else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,6 @@
+//! Image files; one folder or file per format.
+
+pub mod envi;
+pub mod exr;
+pub mod npy;
+pub mod stack;

@@ -1,0 +1,164 @@
+//! NPY, NumPy's format for one array ("NEP 1", versions 1.0 to 3.0), by hand.
+//!
+//! An image is an array of shape (rows, columns, channels), or (rows, columns) for one channel, in C order; its elements are any
+//! of the types that ENVI knows, in either byte order. An array says nothing of wavelengths, units or quantities: the caller
+//! does. Written are little-endian 32-bit floats.
+
+use std::io::{Read, Seek, SeekFrom, Write};
+
+use super::envi::{ByteOrder, DataType, Envi, Header, Interleave, Options, WriteOptions, open_numbers, write_numbers};
+use crate::finding::{Checked, Finding};
+use crate::image::error::{Error, ErrorKind};
+use crate::image::source::Source;
+
+/// The first bytes of every file.
+pub const MAGIC: &[u8; 6] = b"\x93NUMPY";
+/// The longest header that is read.
+const LONGEST_HEADER: usize = 1 << 16;
+/// Bytes before the first number come in multiples of this.
+const ALIGNMENT: usize = 64;
+
+/// Opens an array. `wavelengths_nm` has one entry per channel, or none where the channels are no bands.
+///
+/// # Errors
+/// Where it is no array of an image's shape and type, is cut off, or has another number of channels.
+pub fn open<R: Read + Seek + Send>(
+    mut input: R,
+    wavelengths_nm: Vec<f64>,
+    options: Options,
+) -> Result<Checked<Envi<R>>, Error> {
+    let mut header = header(&mut input)?;
+    let bands = header.bands;
+    if !wavelengths_nm.is_empty() && wavelengths_nm.len() != bands {
+        let expected = format!("{bands}, one for each channel of the array");
+        let kind = ErrorKind::Count { found: wavelengths_nm.len(), field: "the wavelengths".to_owned(), expected };
+        return Err(kind.into());
+    }
+    header.wavelengths = wavelengths_nm;
+    header.wavelength_unit = Some(crate::spectrum::WavelengthUnit::Nanometre);
+    open_numbers(header, input, options)
+}
+
+/// The number of channels of an array.
+///
+/// # Errors
+/// As [`open`].
+pub fn channels(input: &mut (impl Read + Seek)) -> Result<usize, Error> {
+    header(input).map(|h| h.bands)
+}
+
+/// What the header says, as one of ENVI's.
+fn header(input: &mut (impl Read + Seek)) -> Result<Header, Error> {
+    let (text, offset) = header_text(input)?;
+    let (data_type, byte_order) = element(field(&text, "descr")?)?;
+    if field(&text, "fortran_order")? != "False" {
+        let found = "an array in Fortran order".to_owned();
+        return Err(ErrorKind::Unsupported { found, expected: "C order (numpy.ascontiguousarray)".to_owned() }.into());
+    }
+    let shape = field(&text, "shape")?;
+    let sizes: Option<Vec<usize>> = shape
+        .trim_matches(['(', ')'])
+        .split(',')
+        .map(str::trim)
+        .filter(|s| !s.is_empty())
+        .map(|s| s.parse().ok().filter(|n| *n > 0))
+        .collect();
+    let (lines, samples, bands) = match sizes.as_deref() {
+        Some([lines, samples]) => (*lines, *samples, 1),
+        Some([lines, samples, bands]) => (*lines, *samples, *bands),
+        _ => {
+            let expected = "(rows, columns, channels) or (rows, columns), none of them 0".to_owned();
+            return Err(ErrorKind::Value { found: shape.to_owned(), field: "`shape`".to_owned(), expected }.into());
+        }
+    };
+    let mut header = Header::new(samples, lines, bands, data_type);
+    (header.interleave, header.byte_order, header.offset) = (Interleave::Bip, byte_order, offset);
+    Ok(header)
+}
+
+/// The dictionary, and where the numbers begin.
+fn header_text(input: &mut (impl Read + Seek)) -> Result<(String, u64), Error> {
+    input.seek(SeekFrom::Start(0))?;
+    let mut start = [0; 8];
+    input.read_exact(&mut start)?;
+    if !start.starts_with(MAGIC) {
+        let expected = "an NPY file".to_owned();
+        return Err(ErrorKind::Unexpected { found: "other first bytes".to_owned(), expected }.into());
+    }
+    let (length, before) = if start[6] == 1 {
+        let mut length = [0; 2];
+        input.read_exact(&mut length)?;
+        (usize::from(u16::from_le_bytes(length)), 10)
+    } else {
+        let mut length = [0; 4];
+        input.read_exact(&mut length)?;
+        (u32::from_le_bytes(length) as usize, 12)
+    };
+    if length > LONGEST_HEADER {
+        let expected = format!("at most {LONGEST_HEADER}");
+        let field = "the length of the header".to_owned();
+        return Err(ErrorKind::Value { found: length.to_string(), field, expected }.into());
+    }
+    let mut text = vec![0; length];
+    input.read_exact(&mut text)?;
+    Ok((String::from_utf8_lossy(&text).into_owned(), (before + length) as u64))
+}
+
+/// The value of a key in the dictionary literal.
+fn field<'a>(text: &'a str, key: &str) -> Result<&'a str, Error> {
+    let missing =
+        || ErrorKind::Missing { field: key.to_owned(), expected: "it in the header of an NPY file".to_owned() };
+    let quoted = [format!("'{key}'"), format!("\"{key}\"")];
+    let at = quoted.iter().find_map(|q| Some(text.find(q.as_str())? + q.len())).ok_or_else(missing)?;
+    let rest = text[at..].trim_start().strip_prefix(':').ok_or_else(missing)?.trim_start();
+    let end = if rest.starts_with('(') { rest.find(')').map(|e| e + 1) } else { rest.find([',', '}']) };
+    Ok(rest[..end.ok_or_else(missing)?].trim().trim_matches(['\'', '"']))
+}
+
+/// The type and order that `<f4`, `>u2`, `|u1` … stand for.
+fn element(descr: &str) -> Result<(DataType, ByteOrder), Error> {
+    let order = match descr.chars().next() {
+        Some('<' | '|') => Some(ByteOrder::Little),
+        Some('>') => Some(ByteOrder::Big),
+        _ => None,
+    };
+    let kind = match descr.get(1..) {
+        Some("u1") => Some(DataType::U8),
+        Some("i2") => Some(DataType::I16),
+        Some("i4") => Some(DataType::I32),
+        Some("f4") => Some(DataType::F32),
+        Some("f8") => Some(DataType::F64),
+        Some("u2") => Some(DataType::U16),
+        Some("u4") => Some(DataType::U32),
+        Some("i8") => Some(DataType::I64),
+        Some("u8") => Some(DataType::U64),
+        _ => None,
+    };
+    kind.zip(order).ok_or_else(|| {
+        let expected = "one of u1, u2, u4, u8, i2, i4, i8, f4, f8 with its byte order, such as <f4".to_owned();
+        ErrorKind::Value { found: format!("`{descr}`"), field: "`descr`".to_owned(), expected }.into()
+    })
+}
+
+/// Writes an image as an array of shape (rows, columns, channels), or (rows, columns) where it has one channel.
+///
+/// # Errors
+/// Those of the source and of the writer.
+pub fn write<W: Write + Seek>(mut out: W, source: &mut dyn Source) -> Result<Vec<Finding>, Error> {
+    let d = source.description();
+    let shape = match d.channels.len() {
+        1 => format!("({}, {})", d.height, d.width),
+        channels => format!("({}, {}, {channels})", d.height, d.width),
+    };
+    let mut text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
+    let length = (10 + text.len() + 1).next_multiple_of(ALIGNMENT) - 10;
+    text.push_str(&" ".repeat(length - text.len() - 1));
+    text.push('\n');
+    out.write_all(MAGIC)?;
+    out.write_all(&[1, 0])?;
+    // The text is a few dozen bytes and two or three numbers.
+    out.write_all(&u16::try_from(length).unwrap_or(u16::MAX).to_le_bytes())?;
+    out.write_all(text.as_bytes())?;
+    let options = WriteOptions { interleave: Interleave::Bip, ..WriteOptions::default() };
+    write_numbers(out, source, options, 10 + length as u64)
+}

@@ -1,0 +1,5 @@
+//! Images as JSON and text.
+
+mod info;
+
+pub use info::{info, info_text};

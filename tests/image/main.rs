@@ -1,0 +1,13 @@
+//! Spectral images: conversion, formats, and files written by other programs.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod agreement;
+mod cli;
+mod envi;
+mod exr;
+mod kernel;
+mod npy;
+mod stack;
+mod streaming;
