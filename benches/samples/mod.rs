@@ -29,6 +29,13 @@ pub const MEAN_RA: f64 = 73.416_2;
 /// Mean Rf of the first 100: colour-science 0.4.7, to 0.02.
 pub const MEAN_RF: f64 = 75.669_7;
 
+/// Side of the square image, in pixels; pixel i from the left and then the top has spectrum i.
+pub const IMAGE_SIZE: usize = 1024;
+/// Its bands, 400 to 700 nm by 10 nm.
+pub const IMAGE_BANDS: usize = 31;
+/// Mean of its Y (CIE 1931, summation by 10 nm, no factor): numpy on the tables of colour-science 0.4.7.
+pub const MEAN_IMAGE_Y: f64 = 81.344_021_78;
+
 /// 380 to 780 nm by 5 nm.
 pub fn grid() -> Arc<Grid> {
     Arc::new(Grid::uniform(380.0, 5.0, SAMPLES).expect("ascending"))
@@ -36,16 +43,20 @@ pub fn grid() -> Arc<Grid> {
 
 /// The first `count` spectra, one after the other.
 pub fn rows(count: usize) -> Vec<f64> {
+    spectra_at(380.0, 5.0, SAMPLES).take(count).flatten().collect()
+}
+
+/// The spectra on `samples` wavelengths from `start_nm` by `step_nm`, without end.
+pub fn spectra_at(start_nm: f64, step_nm: f64, samples: usize) -> impl Iterator<Item = impl Iterator<Item = f64>> {
     let bell = |x: f64| (-0.5 * x * x).exp();
-    let spectrum = |i: usize| {
+    (0_usize..).map(move |i| {
         let part = |step: f64| (step * i as f64).fract();
         let (blue, peak) = (0.1 + 1.6 * part(0.618_033_988_75), 560.0 + 40.0 * part(0.754_877_666_2));
-        (0..SAMPLES).map(move |k| {
-            let wavelength = 380.0 + 5.0 * k as f64;
+        (0..samples).map(move |k| {
+            let wavelength = start_nm + step_nm * k as f64;
             blue * bell((wavelength - 450.0) / 10.0) + bell((wavelength - peak) / 55.0)
         })
-    };
-    (0..count).flat_map(spectrum).collect()
+    })
 }
 
 /// Asserts that the mean of `values` is `want` to within `tolerance`.

@@ -4,6 +4,8 @@
 //! Implementations: `photopic`, `photopic-1` (one spectrum at a time), `colorimetry` (the crate), `colorimetry-1nm` (its
 //! resampling to 401 samples done beforehand). Tasks: `xyz`, `cct`, `cri`, `tm30`, and of photopic `cold`: the first
 //! conversion in a process, tables and plans included. `lm63-plain` and `lm63-long` of photopic and `eulumdat`: see `lamps`.
+//! conversion in a process, tables and plans included, and `image`: 1024 rows of 1024 pixels of 31 bands to X, Y, Z, beside
+//! which `read` reads the same bytes.
 
 mod lamps;
 #[path = "../../samples/mod.rs"]
@@ -20,9 +22,12 @@ use photopic::colorimetry::{cct, chromaticity, cri, tm30};
 use photopic::constants::{K_M, SecondRadiation};
 use photopic::conversion::{Converter, Settings};
 use photopic::photometry::luminous::{self, Efficacy, Efficiency};
-use photopic::spectrum::integrate::{Contract, Matrix};
-use photopic::spectrum::{Quantity, Sampling, Spectrum};
-use samples::{MEAN_CCT, MEAN_RA, MEAN_RF, MEAN_XYZ, SAMPLES, assert_mean, grid, rows};
+use photopic::image::kernel::Weights;
+use photopic::spectrum::integrate::{Contract, Matrix, Rule};
+use photopic::spectrum::{Grid, Quantity, Sampling, Spectrum};
+use samples::{
+    IMAGE_BANDS, IMAGE_SIZE, MEAN_CCT, MEAN_IMAGE_Y, MEAN_RA, MEAN_RF, MEAN_XYZ, SAMPLES, assert_mean, grid, rows, spectra_at,
+};
 
 const C2: SecondRadiation = SecondRadiation::Its90;
 const SAMPLING: Sampling = Sampling::Density;
@@ -39,6 +44,8 @@ fn main() {
         ("photopic", "cri") => photopic_cri(),
         ("photopic", "tm30") => photopic_tm30(),
         ("photopic", "cold") => photopic_cold(),
+        ("photopic", "image") => photopic_image(),
+        ("read", "image") => read_image(),
         ("colorimetry", "xyz") => crate_xyz(),
         ("colorimetry-1nm", "xyz") => crate_xyz_ready(),
         ("colorimetry-1nm", "cct") => crate_cct(),
@@ -85,6 +92,47 @@ fn photopic_xyz() {
     let values = rows(100_000);
     let want = (K_M * MEAN_XYZ[1], 1e-5);
     race(&mut vec![[0.0; 4]; 100_000], |v| v[3], want, |out| matrix.integrals(&values, out));
+}
+
+/// The image of `IMAGE_SIZE`² pixels: by row, then band, then pixel.
+fn image() -> Vec<f32> {
+    let mut out = vec![0.0; IMAGE_SIZE * IMAGE_SIZE * IMAGE_BANDS];
+    for (i, spectrum) in spectra_at(400.0, 10.0, IMAGE_BANDS).take(IMAGE_SIZE * IMAGE_SIZE).enumerate() {
+        let (x, y) = (i % IMAGE_SIZE, i / IMAGE_SIZE);
+        for (band, value) in spectrum.enumerate() {
+            out[(y * IMAGE_BANDS + band) * IMAGE_SIZE + x] = value as f32;
+        }
+    }
+    out
+}
+
+fn photopic_image() {
+    let grid = Grid::uniform(400.0, 10.0, IMAGE_BANDS).expect("ascending");
+    let sum = Contract { rule: Some(Rule::Summation), range_nm: None };
+    let plan = observer::Plan::new(Observer::Cie1931, &grid, SAMPLING, &sum).expect("a rule for equal steps");
+    let weights = Weights::new(plan.weights());
+    let image = image();
+    let mean_y = |row: &Vec<f32>| {
+        row[IMAGE_SIZE..2 * IMAGE_SIZE].iter().map(|v| f64::from(*v)).sum::<f64>() / IMAGE_SIZE as f64
+    };
+    race(&mut vec![vec![0.0; 3 * IMAGE_SIZE]; IMAGE_SIZE], mean_y, (MEAN_IMAGE_Y, 1e-4), |out| {
+        for (row, out) in image.chunks_exact(IMAGE_SIZE * IMAGE_BANDS).zip(out) {
+            weights.apply(row, IMAGE_SIZE, out, IMAGE_SIZE);
+        }
+    });
+}
+
+fn read_image() {
+    let image = image();
+    race(&mut vec![0_u32; IMAGE_SIZE], |v| f64::from(*v), (0.0, f64::INFINITY), |out| {
+        for (row, out) in image.chunks_exact(IMAGE_SIZE * IMAGE_BANDS).zip(out) {
+            let mut sums = [0_u32; 32];
+            for chunk in row.chunks_exact(32) {
+                sums.iter_mut().zip(chunk).for_each(|(s, v)| *s = s.wrapping_add(v.to_bits()));
+            }
+            *out = sums.into_iter().fold(0, u32::wrapping_add);
+        }
+    });
 }
 
 fn photopic_xyz_one_by_one() {
