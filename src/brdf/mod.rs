@@ -16,7 +16,14 @@
 //!
 //! | file | what it is |
 //! |---|---|
-//! | [`lambert`] | ideal diffuse reflection |
+//! | [`lambert`], [`oren_nayar`] | diffuse reflection, ideal and of rough surfaces |
+//! | [`specular`], [`fresnel`] | mirrors, polished glass and metal; Fresnel's reflectance |
+//! | [`phong`], [`ward`], [`ashikhmin_shirley`] | empirical lobes |
+//! | [`microfacet`] | Torrance-Sparrow with GGX, Beckmann and Blinn facets |
+//! | [`abc`], [`sgd`] | microfacets fitted to measured materials |
+//! | [`sum`] | sums and mixtures |
+//! | [`reflectance`] | reflectances between directions, cones, hemispheres |
+//! | [`parameter`] | names and ranges of parameters |
 //!
 //! A new material implements [`Brdf`]: [`Brdf::bands`], [`Brdf::is_isotropic`] and [`Brdf::evaluate`] are all it must give. The
 //! others have defaults that are right for any material without Dirac lobes, and slow for narrow ones.
@@ -27,9 +34,19 @@ use glam::DVec3;
 
 use crate::math::sampling;
 
+pub mod abc;
+pub mod ashikhmin_shirley;
+pub mod fresnel;
 pub mod lambert;
+pub mod microfacet;
+pub mod oren_nayar;
 pub mod parameter;
+pub mod phong;
 pub mod reflectance;
+pub mod sgd;
+pub mod specular;
+pub mod sum;
+pub mod ward;
 
 pub use parameter::Error;
 
@@ -118,4 +135,20 @@ pub(crate) fn sample_by<B: Brdf + ?Sized>(
     brdf.evaluate(incident, outgoing, weights);
     weights.iter_mut().for_each(|w| *w *= incident.z / pdf);
     Some(Sampled { incident, pdf, delta: false })
+}
+
+/// The reflection of ω_o at a facet of unit normal `normal`; `None` for a facet that ω_o does not see.
+fn reflected(outgoing: DVec3, normal: DVec3) -> Option<DVec3> {
+    let cos = outgoing.dot(normal);
+    (cos > 0.0).then(|| 2.0 * cos * normal - outgoing)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / (values.len().max(1) as f64)
+}
+
+/// How often a sampler draws from a diffuse part of reflectance `diffuse` beside a lobe of reflectance `lobe`.
+fn diffuse_probability(diffuse: &[f64], lobe: &[f64]) -> f64 {
+    let (d, l) = (mean(diffuse), mean(lobe));
+    if d + l > 0.0 { d / (d + l) } else { 1.0 }
 }
