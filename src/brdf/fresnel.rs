@@ -57,8 +57,8 @@ pub fn dielectric(cos: f64, eta: f64) -> f64 {
 /// What of a conductor's reflectance does not depend on the angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Conductor {
-    /// Real part of ñ².
-    real: f64,
+    /// Real part of ñ² − 1.
+    excess: f64,
     /// Imaginary part of ñ², without its sign.
     imaginary: f64,
     /// |ñ² − 1|².
@@ -68,7 +68,7 @@ struct Conductor {
 impl Conductor {
     fn new(n: f64, k: f64) -> Self {
         let contrast = ((n - 1.0).powi(2) + k * k) * ((n + 1.0).powi(2) + k * k);
-        Self { real: (n - k) * (n + k), imaginary: 2.0 * n * k, contrast }
+        Self { excess: (n - 1.0) * (n + 1.0) - k * k, imaginary: 2.0 * n * k, contrast }
     }
 
     fn reflectance(&self, cos: f64) -> f64 {
@@ -76,7 +76,7 @@ impl Conductor {
             return 0.0;
         }
         let c2 = cos * cos;
-        let t = self.real - 1.0 + c2;
+        let t = self.excess + c2;
         let length = (t * t + self.imaginary * self.imaginary).sqrt();
         let large = (0.5 * (length + t.abs())).sqrt();
         // At t = 0 = imaginary part, g is 0.
@@ -84,8 +84,8 @@ impl Conductor {
         let (a, b) = if t >= 0.0 { (large, small) } else { (small, large) };
         let below_s = (cos + a) * (cos + a) + b * b;
         let s = self.contrast / (below_s * below_s);
-        let (re, im) = (c2 * (self.real + 1.0) - 1.0, c2 * self.imaginary);
-        let (below_re, below_im) = (self.real * cos + a, self.imaginary * cos + b);
+        let (re, im) = (c2 * (self.excess + 2.0) - 1.0, c2 * self.imaginary);
+        let (below_re, below_im) = ((self.excess + 1.0) * cos + a, self.imaginary * cos + b);
         let below_p = below_re * below_re + below_im * below_im;
         let p = self.contrast * (re * re + im * im) / (below_p * below_p);
         (0.5 * (s + p)).min(1.0)
@@ -219,7 +219,7 @@ mod tests {
         // ((n − 1)/(n + 1))² and its complex form at normal incidence, 1 at grazing incidence.
         assert!((dielectric(1.0, 1.5) - 0.04).abs() < 1e-16);
         assert!((conductor(1.0, 0.2, 3.0) - (0.64 + 9.0) / (1.44 + 9.0)).abs() < 1e-15);
-        assert_eq!((dielectric(0.0, 1.5), conductor(0.0, 0.2, 3.0)), (1.0, 1.0));
+        assert!((dielectric(0.0, 1.5) - 1.0).abs() < 1e-15 && (conductor(0.0, 0.2, 3.0) - 1.0).abs() < 1e-15);
         // Brewster's angle: only r_s is left, ((n² − 1)/(n² + 1))²/2.
         let (n, brewster) = (1.5_f64, 1.5_f64.atan());
         let expected = 0.5 * ((n * n - 1.0) / (n * n + 1.0)).powi(2);

@@ -22,6 +22,9 @@
 //! | [`microfacet`] | Torrance-Sparrow with GGX, Beckmann and Blinn facets |
 //! | [`abc`], [`sgd`] | microfacets fitted to measured materials |
 //! | [`sum`] | sums and mixtures |
+//! | [`medium`] | refractive indices of a few substances |
+//! | [`description`] | materials in words, for the command line, files and scenes |
+//! | [`audit`] | reciprocity, energy, sign, symmetry, coverage |
 //! | [`reflectance`] | reflectances between directions, cones, hemispheres |
 //! | [`parameter`] | names and ranges of parameters |
 //!
@@ -36,8 +39,11 @@ use crate::math::sampling;
 
 pub mod abc;
 pub mod ashikhmin_shirley;
+pub mod audit;
+pub mod description;
 pub mod fresnel;
 pub mod lambert;
+pub mod medium;
 pub mod microfacet;
 pub mod oren_nayar;
 pub mod parameter;

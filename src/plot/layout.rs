@@ -70,6 +70,10 @@ impl Panel {
             Self::Spectrum(p) => &p.title,
             Self::Chromaticity(p) => &p.title,
             Self::ColourVector(p) => &p.title,
+            Self::Lobe(p) => &p.title,
+            Self::Curves(p) => &p.title,
+            Self::Raster(p) => &p.title,
+            Self::Surface(p) => &p.title,
         }
     }
 
@@ -78,6 +82,10 @@ impl Panel {
             Self::Spectrum(p) => p.draw(sheet, area),
             Self::Chromaticity(p) => p.draw(sheet, area),
             Self::ColourVector(p) => p.draw(sheet, area),
+            Self::Lobe(p) => p.draw(sheet, area),
+            Self::Curves(p) => p.draw(sheet, area),
+            Self::Raster(p) => p.draw(sheet, area),
+            Self::Surface(p) => p.draw(sheet, area),
         }
     }
 }

@@ -29,24 +29,33 @@
 
 mod axis;
 mod background;
+pub mod brdf;
 mod chromaticity;
 mod clip;
 mod colour_vector;
 pub mod conversion;
+mod curves;
 mod font;
 mod horseshoe;
 mod inset;
 mod labels;
 mod layout;
+mod lobe;
 mod png;
+mod raster;
 mod sheet;
 mod spectrum;
 mod spectrum_curves;
+mod surface;
 mod svg;
 
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
 pub use colour_vector::ColourVectorPanel;
+pub use curves::{CurvesPanel, NamedCurve};
+pub use lobe::{Lobe, LobePanel};
+pub use raster::RasterPanel;
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
+pub use surface::SurfacePanel;
 
 /// The kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,6 +77,14 @@ pub enum Panel {
     Chromaticity(ChromaticityPanel),
     /// A colour vector graphic after ANSI/IES TM-30.
     ColourVector(Box<ColourVectorPanel>),
+    /// Reflection in the plane of incidence, polar.
+    Lobe(LobePanel),
+    /// Curves over an angle.
+    Curves(CurvesPanel),
+    /// A picture.
+    Raster(RasterPanel),
+    /// A lobe in space.
+    Surface(SurfacePanel),
 }
 
 impl From<SpectrumPanel> for Panel {
@@ -85,6 +102,30 @@ impl From<ChromaticityPanel> for Panel {
 impl From<ColourVectorPanel> for Panel {
     fn from(panel: ColourVectorPanel) -> Self {
         Self::ColourVector(Box::new(panel))
+    }
+}
+
+impl From<LobePanel> for Panel {
+    fn from(panel: LobePanel) -> Self {
+        Self::Lobe(panel)
+    }
+}
+
+impl From<CurvesPanel> for Panel {
+    fn from(panel: CurvesPanel) -> Self {
+        Self::Curves(panel)
+    }
+}
+
+impl From<RasterPanel> for Panel {
+    fn from(panel: RasterPanel) -> Self {
+        Self::Raster(panel)
+    }
+}
+
+impl From<SurfacePanel> for Panel {
+    fn from(panel: SurfacePanel) -> Self {
+        Self::Surface(panel)
     }
 }
 

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Smith's masking has no closed form for it: this is Walter's rational function, made for Beckmann's distribution of the same
-//! roughness and good to 0.35 % there.
+//! roughness and good to 0.35 % there. With it the facets return up to 1 % more light than they get at grazing incidence (n = 30,
+//! F = 1, 89°); with V-cavities, which suit any distribution and are the default, they do not.
 //!
 //! References: J. F. Blinn, SIGGRAPH 1977; B. Walter et al., EGSR 2007, eqs. 27, 30.
 
