@@ -110,7 +110,8 @@ impl Audit {
     #[must_use]
     pub fn largest_albedo(&self) -> Option<(&Albedo, usize, f64)> {
         let all = self.albedo.iter().flat_map(|a| a.reflectance.iter().enumerate().map(move |(i, v)| (a, i, *v)));
-        all.max_by(|a, b| a.2.total_cmp(&b.2))
+        // The first of equal ones.
+        all.reduce(|best, next| if next.2 > best.2 { next } else { best })
     }
 }
 

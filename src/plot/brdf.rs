@@ -18,6 +18,7 @@ fn angles(theta_i_deg: f64) -> Vec<f64> {
         let d = 10f64.powf(-4.0 + 4.0 * f64::from(k) / 60.0);
         out.extend([theta_i_deg - d, theta_i_deg, theta_i_deg + d]);
     }
+    out.extend([-89.999, 89.999]);
     out.retain(|t| t.abs() < 90.0);
     out.sort_by(f64::total_cmp);
     out.dedup();
@@ -50,6 +51,7 @@ pub fn log_panel(brdf: &dyn Brdf, thetas_deg: &[f64], band: usize) -> CurvesPane
     CurvesPanel {
         title: "plane of incidence".to_owned(),
         x_label: "outgoing angle [°], the light comes from the left".to_owned(),
+        x_step: Some(30.0),
         y_label: "BRDF [1/sr]".to_owned(),
         curves: thetas_deg.iter().map(curve).collect(),
         logarithmic: true,
@@ -70,6 +72,7 @@ pub fn albedo_panel(brdf: &dyn Brdf, names: &[String]) -> CurvesPanel {
     CurvesPanel {
         title: "directional-hemispherical reflectance".to_owned(),
         x_label: "angle of incidence [°]".to_owned(),
+        x_step: Some(15.0),
         y_label: "albedo".to_owned(),
         curves,
         logarithmic: false,
@@ -150,9 +153,12 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         let local = |d: DVec3| dvec3(d.dot(t), d.dot(b), d.dot(normal));
         let incident = local(light);
         brdf.evaluate(incident, local(DVec3::Z), &mut values);
-        let row = ALBEDO_DEG.partition_point(|a| *a < normal.z.acos().to_degrees()).min(ALBEDO_DEG.len() - 1);
-        for (v, a) in values.iter_mut().zip(&ambient[row]) {
-            *v = *v * incident.z.max(0.0) * std::f64::consts::PI + 0.12 * a;
+        let theta = normal.z.acos().to_degrees();
+        let above = ALBEDO_DEG.partition_point(|a| *a < theta).clamp(1, ALBEDO_DEG.len() - 1);
+        let (low, high) = (ALBEDO_DEG[above - 1], ALBEDO_DEG[above]);
+        let share = ((theta - low) / (high - low)).min(1.0);
+        for (v, (a, b)) in values.iter_mut().zip(ambient[above - 1].iter().zip(&ambient[above])) {
+            *v = *v * incident.z.max(0.0) * std::f64::consts::PI + 0.12 * (a + share * (b - a));
         }
         pixels.extend(tint.pixel(&values, 0.9));
     }
@@ -160,7 +166,7 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         title: "lit sphere".to_owned(),
         side: SIDE,
         pixels,
-        caption: "one small lamp and a little light from everywhere; brighter than a white diffuser is cut".to_owned(),
+        caption: "a small lamp, and a little light from everywhere".to_owned(),
     }
 }
 

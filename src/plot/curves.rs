@@ -24,6 +24,8 @@ pub struct CurvesPanel {
     pub title: String,
     /// Below the horizontal axis, with its unit.
     pub x_label: String,
+    /// Distance of the ticks of the horizontal axis; round values where it is not given.
+    pub x_step: Option<f64>,
     /// Beside the vertical axis, with its unit.
     pub y_label: String,
     /// The curves.
@@ -55,7 +57,7 @@ impl CurvesPanel {
             (0.0, if highest > 0.0 { 1.06 * highest } else { 1.0 })
         };
         let y = Scale::new(low, high, plot.y1, plot.y0);
-        let xs = x.ticks(70.0);
+        let xs = self.x_step.map_or_else(|| x.ticks(70.0), |step| x.ticks_every(step));
         for &v in &xs.values {
             sheet.line((x.at(v), plot.y0), (x.at(v), plot.y1), 1.0, GRID);
         }

@@ -36,7 +36,7 @@ impl SurfacePanel {
     pub(super) fn draw(&self, sheet: &mut Sheet, area: Rect) {
         let top = axis::title(sheet, area, &self.title);
         let bottom = area.y1 - MARGIN - 24.0;
-        let size = ((area.width() - 2.0 * MARGIN) / 2.3).min((bottom - top) / 1.65);
+        let size = ((area.width() - 2.0 * MARGIN) / 2.1).min((bottom - top) / 1.65);
         let centre = ((area.x0 + area.x1) / 2.0, top + 1.13 * size);
         let place = |p: Place| -> Point { (centre.0 + size * seen(p)[0], centre.1 - size * seen(p)[1]) };
         let circle = |r: f64| -> Vec<Point> {

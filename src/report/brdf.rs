@@ -161,8 +161,10 @@ pub fn check_text(heading: &str, p: &Prepared<'_>, audit: &Audit, findings: &[Fi
         // Writing to a string cannot fail.
         let _ = writeln!(out, "  {f}");
     }
-    let show = |w: Option<Worst>| {
-        w.map_or("–".to_owned(), |w| format!("{} at {}", significant(w.value, 3), in_words(&w.at)))
+    let show = |w: Option<Worst>| match w {
+        None => "–".to_owned(),
+        Some(w) if w.value == 0.0 => "0".to_owned(),
+        Some(w) => format!("{} at {}", significant(w.value, 3), in_words(&w.at)),
     };
     let _ = writeln!(out, "  reciprocity, worst relative   {}", show(audit.reciprocity));
     let _ = writeln!(out, "  symmetry in φ, worst relative {}", show(audit.symmetry));
@@ -303,6 +305,16 @@ pub fn info_text(heading: &str, p: &Prepared<'_>, object: &Map<String, Value>) -
 /// Headers of the table of values.
 pub const EVAL_COLUMNS: [&str; 8] =
     ["path", "theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_deg", "wavelength_nm", "channel", "brdf_per_sr"];
+
+/// That values do not contain what they cannot, as a finding.
+#[must_use]
+pub fn eval_findings(p: &Prepared<'_>) -> Vec<Finding> {
+    if !p.brdf.has_delta() {
+        return Vec::new();
+    }
+    let message = "light leaves in a Dirac lobe, which has a reflectance and no value: it is not in these values";
+    vec![Finding::warning("B006", message).hint("`brdf info` has the reflectances")]
+}
 
 /// `brdf eval`, one object: rows of directions with a value per band.
 #[must_use]

@@ -57,7 +57,7 @@ struct File<'a> {
 
 impl File<'_> {
     fn place(&self, span: &Range<usize>) -> Place {
-        let before = &self.text[..self.text.floor_char_boundary(span.start.min(self.text.len()))];
+        let before = self.text.get(..span.start).unwrap_or(self.text);
         let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
         Place { line: before.matches('\n').count() as u64 + 1, column: line.chars().count() as u64 + 1 }
     }

@@ -87,7 +87,11 @@ fn build(a: &Arguments, masking: &Parameter, distribution: Distribution) -> Resu
 /// `alpha`, or `alpha_x` and `alpha_y`.
 pub(super) fn roughness(a: &Arguments) -> Result<[f64; 2], Error> {
     match (a.has(&ALPHA), a.has(&ALPHA_X), a.has(&ALPHA_Y)) {
-        (true, false, false) => Ok([a.number(&ALPHA)?; 2]),
+        (true, false, false) => {
+            let alpha = a.number(&ALPHA)?;
+            ALPHA.check(alpha)?;
+            Ok([alpha; 2])
+        }
         (true, true, _) => Err(Error::Conflict { first: "alpha", second: "alpha_x" }),
         (true, _, true) => Err(Error::Conflict { first: "alpha", second: "alpha_y" }),
         (false, true, _) | (false, _, true) => Ok([a.number(&ALPHA_X)?, a.number(&ALPHA_Y)?]),

@@ -68,12 +68,14 @@ pub(super) struct Run<'a> {
     pub default_nm: &'a [f64],
     pub envelope: Envelope<Vec<u8>>,
     pub notes: Notes,
+    /// Findings are said on standard error, and are not part of the text.
+    pub say: bool,
 }
 
 impl Run<'_> {
     pub(super) fn each(
         &mut self,
-        mut f: impl FnMut(&str, &str, &report::Prepared<'_>, &mut Envelope<Vec<u8>>) -> Result<(), Failure>,
+        mut f: impl FnMut(&str, &str, &report::Prepared<'_>, &mut Envelope<Vec<u8>>) -> Result<Vec<Finding>, Failure>,
     ) -> Result<(), Failure> {
         let wavelengths = self.materials.wavelength.as_ref().map_or(self.default_nm, |n| &n.0);
         for argument in &self.materials.materials {
@@ -83,7 +85,13 @@ impl Run<'_> {
             match prepared {
                 Ok((material, (bands, brdf))) => {
                     let prepared = report::Prepared { material: &material, bands, brdf: brdf.as_ref() };
-                    f(argument, &loaded.name, &prepared, &mut self.envelope)?;
+                    let place = || Location::default().in_file(argument);
+                    let found = f(argument, &loaded.name, &prepared, &mut self.envelope)?;
+                    let found: Vec<Finding> = found.into_iter().map(|f| f.at(place())).collect();
+                    if self.say {
+                        self.notes.print(&found);
+                    }
+                    found.into_iter().for_each(|f| self.envelope.finding(f));
                 }
                 Err(message) => {
                     self.notes.refuse(&message);
@@ -105,6 +113,7 @@ pub(super) fn check(arguments: &CheckArgs, talk: Talk) -> Result<(), Failure> {
         default_nm: &WAVELENGTHS_NM,
         envelope: Envelope::begin(Vec::new(), "brdf check", &settings)?,
         notes: Notes::new(paths, talk),
+        say: false,
     };
     let (mut plain, mut fails) = (String::new(), false);
     run.each(|path, name, prepared, envelope| {
@@ -115,8 +124,7 @@ pub(super) fn check(arguments: &CheckArgs, talk: Talk) -> Result<(), Failure> {
         let mut object = report::check(prepared, &audit);
         object.insert("path".to_owned(), path.into());
         envelope.result(&object.into())?;
-        findings.into_iter().for_each(|f| envelope.finding(f.at(Location::default().in_file(path))));
-        Ok(())
+        Ok(findings)
     })?;
     let document = run.envelope.end()?;
     sink.write_all(if arguments.json { &document } else { plain.as_bytes() })?;
@@ -149,6 +157,7 @@ pub(super) fn info(arguments: &InfoArgs, talk: Talk) -> Result<(), Failure> {
         default_nm: &[555.0],
         envelope: Envelope::begin(Vec::new(), "brdf info", &settings)?,
         notes: Notes::new(paths, talk),
+        say: true,
     };
     let mut plain = String::new();
     run.each(|path, name, prepared, envelope| {
@@ -156,7 +165,8 @@ pub(super) fn info(arguments: &InfoArgs, talk: Talk) -> Result<(), Failure> {
         let mut object = report::info(prepared, &audit, &nine);
         plain.push_str(&report::info_text(name, prepared, &object));
         object.insert("path".to_owned(), path.into());
-        Ok(envelope.result(&object.into())?)
+        envelope.result(&object.into())?;
+        Ok(Vec::new())
     })?;
     let document = run.envelope.end()?;
     sink.write_all(if arguments.json { &document } else { plain.as_bytes() })?;

@@ -56,6 +56,7 @@ pub(super) fn eval(arguments: &EvalArgs, talk: Talk) -> Result<(), Failure> {
         default_nm: &[555.0],
         envelope: Envelope::begin(Vec::new(), "brdf eval", &json!({}))?,
         notes: Notes::new(paths, talk),
+        say: true,
     };
     let mut plain = String::new();
     let mut table = csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(Vec::new());
@@ -74,7 +75,7 @@ pub(super) fn eval(arguments: &EvalArgs, talk: Talk) -> Result<(), Failure> {
         } else {
             plain.push_str(&report::eval_text(name, prepared, &geometries));
         }
-        Ok(())
+        Ok(report::eval_findings(prepared))
     })?;
     let document = run.envelope.end()?;
     let table = table.into_inner().map_err(|e| Failure::Message(e.to_string()))?;
