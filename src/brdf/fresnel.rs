@@ -12,7 +12,7 @@
 //!
 //! | parameter | range | meaning |
 //! |---|---|---|
-//! | `medium` | a name of [`medium`] | a substance whose n(λ), k(λ) are known |
+//! | `medium` | a name of [`medium`](super::medium) | a substance whose n(λ), k(λ) are known |
 //! | `eta` | 1 to 1e3, spectral | n, refractive index relative to the medium outside |
 //! | `k` | 0 to 1e6, spectral, 0 if not given | extinction coefficient |
 //! | `f0` | 0 to 1, spectral | Schlick: reflectance at normal incidence |

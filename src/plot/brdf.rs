@@ -40,7 +40,11 @@ fn plane(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> Vec<(f64, f64)> {
 /// Lobes of a band as a polar drawing.
 #[must_use]
 pub fn lobe_panel(brdf: &dyn Brdf, title: &str, thetas_deg: &[f64], band: usize) -> LobePanel {
-    let lobes = thetas_deg.iter().map(|t| Lobe { theta_i_deg: *t, samples: plane(brdf, *t, band) });
+    let mut specular = vec![0.0; brdf.bands()];
+    let lobes = thetas_deg.iter().map(|t| {
+        brdf.specular(from_degrees(*t, 180.0), &mut specular);
+        Lobe { theta_i_deg: *t, samples: plane(brdf, *t, band), dirac: specular[band] }
+    });
     LobePanel { title: title.to_owned(), lobes: lobes.collect(), unit: "1/sr".to_owned() }
 }
 

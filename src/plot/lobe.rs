@@ -15,6 +15,8 @@ pub struct Lobe {
     pub theta_i_deg: f64,
     /// Outgoing angle in degrees, −90 (towards the light) to 90, and value.
     pub samples: Vec<(f64, f64)>,
+    /// Reflectance of a Dirac lobe in the mirror direction, 0 where there is none.
+    pub dirac: f64,
 }
 
 /// Lobes over the surface, each relative to its own peak, which is written beside it.
@@ -64,11 +66,19 @@ impl LobePanel {
                 sheet.fill(outline.clone(), ink.alpha(0.12));
                 sheet.stroke(outline, 2.0, ink);
             }
+            if lobe.dirac > 0.0 {
+                sheet.line(at(0.0, 0.0), at(lobe.theta_i_deg, 1.0), 2.0, ink);
+            }
             let y = centre.1 + 40.0 + 22.0 * i as f64;
             let x = centre.0 - radius;
             sheet.line((x, y - 5.0), (x + 26.0, y - 5.0), 3.0, ink);
-            let value = axis_number(peak);
-            let text = format!("light at {}°, peak {value} {}", lobe.theta_i_deg, self.unit);
+            let mut text = format!("light at {}°", lobe.theta_i_deg);
+            if peak > 0.0 {
+                text += &format!(", peak {} {}", axis_number(peak), self.unit);
+            }
+            if lobe.dirac > 0.0 {
+                text += &format!(", Dirac lobe of {}", axis_number(lobe.dirac));
+            }
             sheet.text((x + 36.0, y), &font::fit(&text, AXIS_TEXT, 2.0 * radius), AXIS_TEXT, DARK, Align::Start);
         }
         let note = "each lobe relative to its peak; dashed: the light";

@@ -87,8 +87,15 @@ pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
     };
     let middle = thetas[thetas.len() / 2];
     let panels = match arguments.kind {
+        // Dirac lobes have no values for a logarithm.
+        PlotKind::All if brdf.is_delta() => vec![polar(), albedo()],
         PlotKind::All => vec![polar(), log(), albedo(), sphere()?],
         PlotKind::Polar => vec![polar()],
+        PlotKind::Log | PlotKind::Lobe if brdf.is_delta() => {
+            return Err(Failure::Message(format!(
+                "{path}: nothing but a Dirac lobe, which has no values; expected --kind polar, albedo or sphere"
+            )));
+        }
         PlotKind::Log => vec![log()],
         PlotKind::Albedo => vec![albedo()],
         PlotKind::Sphere => vec![sphere()?],
