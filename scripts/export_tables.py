@@ -52,7 +52,7 @@ PINS = {"colour-science": "0.4.7", "luxpy": "1.12.5"}
 COLOUR = f"colour-science {PINS['colour-science']}"
 LUXPY = f"luxpy {PINS['luxpy']}"
 
-Rows = dict[int, list[Decimal]]
+Rows = dict[int | Decimal, list[Decimal]]  # whole nanometres, or as printed
 
 
 # ------------------------------------------------------------------------------------------------ numbers as text
@@ -216,6 +216,57 @@ def between(knots: dict[int, str], w: int) -> tuple[Decimal, Decimal, Decimal]:
     return Decimal(knots[low]), Decimal(knots[high]), share
 
 
+# Optical constants n, k of metals at the photon energies, eV, of the publications; wavelengths in nm as the database
+# refractiveindex.info (CC0 1.0) has them, which is where the digits were copied from.
+NOBLE_NM = "354.2 367.9 381.5 397.4 413.3 430.5 450.9 471.4 495.9 520.9 548.6 582.1 616.8 659.5 704.5 756.0 821.1 892.0"
+NOBLE_EV = "3.50 3.37 3.25 3.12 3.00 2.88 2.75 2.63 2.50 2.38 2.26 2.13 2.01 1.88 1.76 1.64 1.51 1.39"
+METALS = {
+    "ag": ("silver", NOBLE_NM,
+           "0.10 0.07 0.05 0.05 0.05 0.04 0.04 0.05 0.05 0.05 0.06 0.05 0.06 0.05 0.04 0.03 0.04 0.04",
+           "1.419 1.657 1.864 2.070 2.275 2.462 2.657 2.869 3.093 3.324 3.586 3.858 4.152 4.483 4.838 5.242 5.727 6.312"),
+    "au": ("gold", NOBLE_NM,
+           "1.50 1.48 1.46 1.47 1.46 1.45 1.38 1.31 1.04 0.62 0.43 0.29 0.21 0.14 0.13 0.14 0.16 0.17",
+           "1.866 1.895 1.933 1.952 1.958 1.948 1.914 1.849 1.833 2.081 2.455 2.863 3.272 3.697 4.103 4.542 5.083 5.663"),
+    "cu": ("copper", NOBLE_NM,
+           "1.37 1.36 1.33 1.32 1.28 1.25 1.24 1.25 1.22 1.18 1.02 0.70 0.30 0.22 0.21 0.24 0.26 0.30",
+           "1.916 1.975 2.045 2.116 2.207 2.305 2.397 2.483 2.564 2.608 2.577 2.704 3.205 3.747 4.205 4.665 5.180 5.768"),
+    "al": ("aluminium", "326.28 364.66 413.28 442.8 476.87 516.6 563.57 619.93 652.25 688.81 729.32 774.91 794.78 815.69 837.74 885.61",
+           "0.31474 0.39877 0.52135 0.60790 0.72780 0.87340 1.0728 1.3660 1.5724 1.8301 2.1606 2.6154 2.7675 2.7668 2.6945 2.2802",
+           "3.9165 4.3957 5.0008 5.3676 5.7781 6.2418 6.7839 7.4052 7.7354 8.0601 8.3565 8.4914 8.3866 8.2573 8.1878 8.1134"),
+}
+
+
+def metal(symbol: str) -> Table:
+    """Optical constants of one metal; the wavelengths must be those of the publication's photon energies."""
+    name, nm, n, k = METALS[symbol]
+    rows = {Decimal(w): [Decimal(a), Decimal(b)] for w, a, b in zip(nm.split(), n.split(), k.split(), strict=True)}
+    if symbol == "al":
+        # Printed in steps of the energy that end in 0.02, 0.05 or whole tenths of an electron volt.
+        energies = [1239.842 / float(w) for w in rows]
+        odd = [e for e in energies if abs(e * 50 - round(e * 50)) > 0.02 and abs(e * 20 - round(e * 20)) > 0.02]
+        source, doi = "Rakic 1995 Table 1", "10.1364/AO.34.004755"
+        reference = "Rakic 1995, Algorithm for the determination of intrinsic optical constants of metal films: application to aluminum, Applied Optics 34, 4755-4767"
+        database = "main/Al/nk/Rakic.yml"
+    else:
+        odd = [w for w, e in zip(rows, NOBLE_EV.split(), strict=True) if abs(1239.842 / float(w) - float(e)) > 0.0051]
+        source, doi = "Johnson & Christy 1972 Table I", "10.1103/PhysRevB.6.4370"
+        reference = "Johnson & Christy 1972, Optical constants of the noble metals, Physical Review B 6, 4370-4379"
+        database = f"main/{symbol.capitalize()}/nk/Johnson.yml"
+    if odd:
+        fail(f"{name}: wavelengths off the photon energies: {odd}")
+    middle = next(w for w in rows if w > 500)
+    return Table(
+        name=f"nk-{symbol}", aliases=[symbol, name], file=f"refractive/{symbol}.csv",
+        title=f"Optical constants of {name}: refractive index n and extinction coefficient k",
+        standard=source, doi=doi, reference=reference,
+        origin=f"refractiveindex.info database, {database} (digits of the publication)",
+        checked="wavelengths are those of the photon energies at which the publication tabulates",
+        licence="CC0 1.0", rows=rows,
+        columns=[Column("n", "1", "refractive index"), Column("k", "1", "extinction coefficient, of n - ik")],
+        spots=[Spot(middle, c, str(rows[middle][i]), source) for i, c in enumerate("nk")],
+        note="In vacuum wavelengths; the difference to standard air, below 0.03 %, is far below the uncertainty. Opaque films; bulk and oxidised surfaces differ by several per cent.")
+
+
 def blue_light_hazard() -> Rows:
     rows: Rows = {}
     for w in range(300, 501):
@@ -249,7 +300,7 @@ class Column:
 
 @dataclass
 class Spot:
-    nm: int
+    nm: int | Decimal
     column: str
     value: str
     source: str
@@ -810,6 +861,7 @@ def tables() -> list[Table]:
         columns=[Column("rqe", "1", "relative quantum yield per incident photon, growth-chamber mean")],
         spots=[Spot(600, "rqe", "1", "McCree 1972 Table III"), Spot(450, "rqe", "0.75", "McCree 1972 Table III"), Spot(700, "rqe", "0.44", "McCree 1972 Table III")],
         note="Per photon, not per watt. Printed 1 at 600 and 625 nm. The field-grown means (Table IV) could not be confirmed by a second source."))
+    out += [metal(symbol) for symbol in METALS]
     return out
 
 
@@ -869,7 +921,7 @@ def real(x: Decimal) -> str:
     return text if "." in text else text + ".0"
 
 
-def peak(rows: Rows, i: int) -> tuple[int, Decimal]:
+def peak(rows: Rows, i: int) -> tuple[int | Decimal, Decimal]:
     """The largest value and its wavelength; the middle one where several neighbours are printed alike."""
     top = max(r[i] for r in rows.values())
     where = [w for w in sorted(rows) if rows[w][i] == top]
@@ -918,7 +970,7 @@ def manifest(all_tables: list[Table], texts: dict[str, str]) -> str:
             lines += [f"attribution = {quoted('International Commission on Illumination (CIE), Vienna; a header row is added here')}"]
         lines += [f"date = {quoted(EXPORTED)}", f"sha256 = {quoted(hashlib.sha256(texts[t.file].encode()).hexdigest())}"]
         lines += [f"publisher_sha256 = {quoted(t.publisher_sha256)}"] if t.publisher_sha256 else []
-        lines += [f"rows = {len(grid)}", f"first_nm = {grid[0]}.0", f"last_nm = {grid[-1]}.0"]
+        lines += [f"rows = {len(grid)}", f"first_nm = {real(Decimal(grid[0]))}", f"last_nm = {real(Decimal(grid[-1]))}"]
         lines += [f"step_nm = {steps.pop()}.0"] if len(steps) == 1 else []
         lines += [f"interpolation = {quoted(t.interpolation)}", f"extrapolation = {quoted(t.extrapolation)}"]
         lines += [f"smooth = {str(t.smooth).lower()}"]
@@ -928,7 +980,7 @@ def manifest(all_tables: list[Table], texts: dict[str, str]) -> str:
         for i, c in enumerate(t.columns):
             at, top = peak(t.rows, i)
             total = f", published_sum = {real(Decimal(c.published_sum))}" if c.published_sum else ""
-            lines += [f"  {{ name = {quoted(c.name)}, unit = {quoted(c.unit)}, meaning = {quoted(c.meaning)}, peak_nm = {at}.0, peak = {real(top)}{total} }},"]
+            lines += [f"  {{ name = {quoted(c.name)}, unit = {quoted(c.unit)}, meaning = {quoted(c.meaning)}, peak_nm = {real(Decimal(at))}, peak = {real(top)}{total} }},"]
             if c.published_sum and sum(r[i] for r in t.rows.values()) != Decimal(c.published_sum):
                 fail(f"{t.name}: {c.name} sums to {sum(r[i] for r in t.rows.values())}, the CIE publishes {c.published_sum}")
         lines += ["]", "spots = ["]
@@ -936,7 +988,7 @@ def manifest(all_tables: list[Table], texts: dict[str, str]) -> str:
             i = [c.name for c in t.columns].index(s.column)
             if t.rows[s.nm][i] != Decimal(s.value):
                 fail(f"{t.name}: {s.column}({s.nm}) is {t.rows[s.nm][i]}, {s.source} has {s.value}")
-            lines += [f"  {{ nm = {s.nm}.0, column = {quoted(s.column)}, value = {real(Decimal(s.value))}, source = {quoted(s.source)} }},"]
+            lines += [f"  {{ nm = {real(Decimal(s.nm))}, column = {quoted(s.column)}, value = {real(Decimal(s.value))}, source = {quoted(s.source)} }},"]
         lines += ["]", ""]
     for entry in LOOKUPS:
         lines += ["[[lookup]]", *(f"{key} = {quoted(text)}" for key, text in entry.items()), ""]

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+mod brdf;
 mod convert;
 mod image;
 mod lamp;
@@ -48,6 +49,9 @@ enum Command {
     /// Goniometric lamp data (IES LM-63, EULUMDAT, TM-33): facts, findings, trade tables, other formats.
     #[command(subcommand)]
     Lamp(lamp::LampCommand),
+    /// Reflection of materials (BRDF models): facts, audits, values, pictures.
+    #[command(subcommand)]
+    Brdf(brdf::BrdfCommand),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -101,6 +105,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Convert(arguments) => convert::run(*arguments, cli.talk),
         Command::Image(command) => image::run(command, cli.talk),
         Command::Lamp(command) => lamp::run(command, cli.talk),
+        Command::Brdf(command) => brdf::run(command, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

@@ -40,6 +40,16 @@ impl Scale {
         let count = ((self.end - self.start).abs() / spacing).max(1.0);
         Ticks::new(self.low, self.high, count)
     }
+
+    /// Multiples of a whole `step` within the scale.
+    pub(super) fn ticks_every(&self, step: f64) -> Ticks {
+        let (first, last) = ((self.low / step - 1e-9).ceil(), (self.high / step + 1e-9).floor());
+        let mut values = vec![first * step];
+        while values.len() as f64 <= last - first {
+            values.push((first + values.len() as f64) * step);
+        }
+        Ticks { values, decimals: 0 }
+    }
 }
 
 /// Round values and the number of decimals that they need.

@@ -97,6 +97,10 @@ impl Panel {
             Self::Cone(p) => &p.title,
             Self::Figures(p) => &p.title,
             Self::Isolux(p) => &p.title,
+            Self::Lobe(p) => &p.title,
+            Self::Curves(p) => &p.title,
+            Self::Raster(p) => &p.title,
+            Self::Surface(p) => &p.title,
         }
     }
 
@@ -113,6 +117,10 @@ impl Panel {
             Self::Cone(p) => p.draw(sheet, area),
             Self::Figures(p) => p.draw(sheet, area),
             Self::Isolux(p) => p.draw(sheet, area),
+            Self::Lobe(p) => p.draw(sheet, area),
+            Self::Curves(p) => p.draw(sheet, area),
+            Self::Raster(p) => p.draw(sheet, area),
+            Self::Surface(p) => p.draw(sheet, area),
         }
     }
 }

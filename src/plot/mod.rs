@@ -30,6 +30,7 @@
 mod angular;
 mod axis;
 mod background;
+pub mod brdf;
 mod cartesian;
 mod chromaticity;
 mod clip;
@@ -38,6 +39,7 @@ mod colour_map;
 mod colour_vector;
 mod cone;
 pub mod conversion;
+mod curves;
 mod figures;
 mod font;
 pub mod grid;
@@ -47,12 +49,15 @@ mod isocandela;
 mod isolux;
 mod labels;
 mod layout;
+mod lobe;
 pub mod luminaire;
 mod png;
 mod polar;
+mod raster;
 mod sheet;
 mod spectrum;
 mod spectrum_curves;
+mod surface;
 mod svg;
 mod web;
 
@@ -62,11 +67,15 @@ pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, Plan
 pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
 pub use colour_vector::ColourVectorPanel;
 pub use cone::{ConePanel, ConeStep};
+pub use curves::{CurvesPanel, NamedCurve};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
 pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};
+pub use lobe::{Lobe, LobePanel};
 pub use polar::PolarPanel;
+pub use raster::RasterPanel;
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
+pub use surface::SurfacePanel;
 pub use web::WebPanel;
 
 /// The kind of file.
@@ -105,6 +114,14 @@ pub enum Panel {
     Figures(FiguresPanel),
     /// Lines of equal illuminance on a plane.
     Isolux(Box<IsoluxPanel>),
+    /// Reflection in the plane of incidence, polar.
+    Lobe(LobePanel),
+    /// Curves over an angle.
+    Curves(CurvesPanel),
+    /// A picture.
+    Raster(RasterPanel),
+    /// A lobe in space.
+    Surface(SurfacePanel),
 }
 
 macro_rules! panels {
@@ -126,7 +143,11 @@ panels! {
     Web: WebPanel,
     Isocandela: IsocandelaPanel,
     Cone: ConePanel,
-    Figures: FiguresPanel
+    Figures: FiguresPanel,
+    Lobe: LobePanel,
+    Curves: CurvesPanel,
+    Raster: RasterPanel,
+    Surface: SurfacePanel
 }
 
 impl From<ColourVectorPanel> for Panel {

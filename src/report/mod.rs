@@ -3,6 +3,7 @@
 //! Keys and their order are those of `docs/json.md`; they end in their unit, a figure that does not apply is absent, one that
 //! could not be determined is `null` beside a finding that says why.
 
+pub mod brdf;
 pub mod conversion;
 pub mod csv;
 pub mod envelope;

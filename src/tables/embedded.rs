@@ -43,4 +43,8 @@ const FILES: &[(&str, &str)] = files![
     "icnirp/blue_light_hazard.csv",
     "ies/ces99_1nm.csv",
     "mccree/rqe_1972.csv",
+    "refractive/ag.csv",
+    "refractive/al.csv",
+    "refractive/au.csv",
+    "refractive/cu.csv",
 ];

@@ -1,0 +1,32 @@
+//! `brdf`: materials described in words or files, audited, evaluated and drawn; one file per verb.
+
+mod check;
+mod eval;
+mod load;
+mod plot;
+
+use clap::Subcommand;
+
+use super::{Failure, Talk};
+
+/// Verbs of `brdf`.
+#[derive(Debug, Subcommand)]
+pub(super) enum BrdfCommand {
+    /// Parameters, kind, albedo and the nine reflectances of Nicodemus.
+    Info(check::InfoArgs),
+    /// Reciprocity, energy, sign, symmetry and coverage; exit code 1 where they fail.
+    Check(check::CheckArgs),
+    /// Values at lists of directions.
+    Eval(eval::EvalArgs),
+    /// Lobes, albedo and a lit sphere as SVG or PNG.
+    Plot(plot::PlotArgs),
+}
+
+pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
+    match command {
+        BrdfCommand::Info(a) => check::info(&a, talk),
+        BrdfCommand::Check(a) => check::check(&a, talk),
+        BrdfCommand::Eval(a) => eval::eval(&a, talk),
+        BrdfCommand::Plot(a) => plot::plot(&a),
+    }
+}

@@ -1,0 +1,114 @@
+//! `brdf plot`: lobes, albedo, a lit sphere.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::load::{MaterialArgs, Numbers, load, prepare};
+use crate::brdf::description::Bands;
+use crate::cli::Failure;
+use crate::cli::output::write_file;
+use crate::plot::brdf::{Tint, albedo_panel, lobe_panel, log_panel, sphere_panel, surface_panel};
+use crate::plot::{Format, Panel, draw};
+
+/// Wavelengths of the sphere's colours, nm.
+const SPHERE_NM: (f64, f64, u32) = (400.0, 700.0, 31);
+/// Lobes in one drawing at most.
+const MOST_LOBES: usize = 6;
+
+/// What to draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PlotKind {
+    /// Lobes polar and logarithmic, albedo, lit sphere.
+    All,
+    /// Lobes in the plane of incidence, polar.
+    Polar,
+    /// Lobes in the plane of incidence over the angle, logarithmic.
+    Log,
+    /// Albedo over the angle of incidence.
+    Albedo,
+    /// A lit sphere.
+    Sphere,
+    /// The lobe in space.
+    Lobe,
+}
+
+/// A material and what to draw of it.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct PlotArgs {
+    #[command(flatten)]
+    materials: MaterialArgs,
+    /// What to draw.
+    #[arg(short, long, value_enum, default_value = "all")]
+    kind: PlotKind,
+    /// Angles of incidence of the lobes, degrees.
+    #[arg(long, value_name = "DEG", default_value = "15,45,75")]
+    theta_i: Numbers,
+    /// The picture: a name ending in .svg or .png.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+}
+
+pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
+    let format = format_of(&arguments.output)?;
+    let [path] = &arguments.materials.materials[..] else {
+        let count = arguments.materials.materials.len();
+        return Err(Failure::Message(format!("{count} materials; expected one per picture")));
+    };
+    let thetas = &arguments.theta_i.0;
+    if thetas.len() > MOST_LOBES || thetas.iter().any(|t| !(0.0..90.0).contains(t)) {
+        let message = format!("--theta-i: expected 1 to {MOST_LOBES} angles from 0 to below 90 degrees");
+        return Err(Failure::Message(message));
+    }
+    let loaded = load(path);
+    let material = loaded.material.map_err(Failure::Message)?;
+    let default = [555.0];
+    let wavelengths = arguments.materials.wavelength.as_ref().map_or(&default[..], |n| &n.0);
+    let (bands, brdf) = prepare(path, &material, wavelengths).map_err(Failure::Message)?;
+    let names: Vec<String> = match bands {
+        Bands::Wavelengths(nm) => nm.iter().map(|w| format!("{w} nm")).collect(),
+        Bands::Channels(n) => (1..=n).map(|i| format!("channel {i}")).collect(),
+    };
+    // Lobes are of one band: the middle one.
+    let band = brdf.bands() / 2;
+    let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", loaded.name, names[band]), thetas, band));
+    let log = || Panel::from(log_panel(brdf.as_ref(), thetas, band));
+    let albedo = || Panel::from(albedo_panel(brdf.as_ref(), &names));
+    let sphere = || -> Result<Panel, Failure> {
+        let (first, last, count) = SPHERE_NM;
+        let step = (last - first) / f64::from(count - 1);
+        let nm: Vec<f64> = (0..count).map(|i| first + step * f64::from(i)).collect();
+        let (bands, brdf) = prepare(path, &material, &nm).map_err(Failure::Message)?;
+        let tint = match bands {
+            Bands::Wavelengths(nm) => Tint::of_wavelengths(nm),
+            Bands::Channels(n) => Tint::of_channels(n),
+        };
+        Ok(sphere_panel(brdf.as_ref(), &tint).into())
+    };
+    let middle = thetas[thetas.len() / 2];
+    let panels = match arguments.kind {
+        // Dirac lobes have no values for a logarithm.
+        PlotKind::All if brdf.is_delta() => vec![polar(), albedo()],
+        PlotKind::All => vec![polar(), log(), albedo(), sphere()?],
+        PlotKind::Polar => vec![polar()],
+        PlotKind::Log | PlotKind::Lobe if brdf.is_delta() => {
+            return Err(Failure::Message(format!(
+                "{path}: nothing but a Dirac lobe, which has no values; expected --kind polar, albedo or sphere"
+            )));
+        }
+        PlotKind::Log => vec![log()],
+        PlotKind::Albedo => vec![albedo()],
+        PlotKind::Sphere => vec![sphere()?],
+        PlotKind::Lobe => vec![surface_panel(brdf.as_ref(), middle, band).into()],
+    };
+    let bytes = draw(&panels, None, format).map_err(|e| Failure::Message(e.to_string()))?;
+    write_file(&arguments.output, &bytes, std::slice::from_ref(path))
+}
+
+fn format_of(path: &Path) -> Result<Format, Failure> {
+    match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("svg") => Ok(Format::Svg),
+        Some("png") => Ok(Format::Png),
+        _ => Err(Failure::Message(format!("-o {}: expected a file name ending in .svg or .png", path.display()))),
+    }
+}

@@ -1,0 +1,204 @@
+//! From BRDFs to panels: lobes in the plane of incidence, albedo over angle, a lit sphere, the lobe in space.
+
+use glam::{DVec3, dvec3};
+
+use crate::brdf::Brdf;
+use crate::brdf::audit::ALBEDO_DEG;
+use crate::colorimetry::observer::Observer;
+use crate::colorimetry::rgb;
+use crate::geometry::direction::{from_degrees, tangents};
+
+use super::{CurvesPanel, Lobe, LobePanel, NamedCurve, RasterPanel, SurfacePanel};
+
+/// Outgoing angles of a lobe in the plane of incidence, −90° to 90°, fine about the mirror direction.
+fn angles(theta_i_deg: f64) -> Vec<f64> {
+    let mut out: Vec<f64> = (-1799..=1799).map(|i| 0.05 * f64::from(i)).collect();
+    // A logarithmic net about the mirror direction finds needles.
+    for k in 0..60 {
+        let d = 10f64.powf(-4.0 + 4.0 * f64::from(k) / 60.0);
+        out.extend([theta_i_deg - d, theta_i_deg, theta_i_deg + d]);
+    }
+    out.extend([-89.999, 89.999]);
+    out.retain(|t| t.abs() < 90.0);
+    out.sort_by(f64::total_cmp);
+    out.dedup();
+    out
+}
+
+/// Values of a band in the plane of incidence.
+fn plane(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> Vec<(f64, f64)> {
+    let incident = from_degrees(theta_i_deg, 180.0);
+    let mut values = vec![0.0; brdf.bands()];
+    (angles(theta_i_deg).into_iter())
+        .map(|t| {
+            brdf.evaluate(incident, from_degrees(t.abs(), if t < 0.0 { 180.0 } else { 0.0 }), &mut values);
+            (t, values[band])
+        })
+        .collect()
+}
+
+/// Lobes of a band as a polar drawing.
+#[must_use]
+pub fn lobe_panel(brdf: &dyn Brdf, title: &str, thetas_deg: &[f64], band: usize) -> LobePanel {
+    let mut specular = vec![0.0; brdf.bands()];
+    let lobes = thetas_deg.iter().map(|t| {
+        brdf.specular(from_degrees(*t, 180.0), &mut specular);
+        Lobe { theta_i_deg: *t, samples: plane(brdf, *t, band), dirac: specular[band] }
+    });
+    LobePanel { title: title.to_owned(), lobes: lobes.collect(), unit: "1/sr".to_owned() }
+}
+
+/// The same lobes over the outgoing angle, logarithmic.
+#[must_use]
+pub fn log_panel(brdf: &dyn Brdf, thetas_deg: &[f64], band: usize) -> CurvesPanel {
+    let curve = |t: &f64| NamedCurve { name: format!("light at {t}°"), points: plane(brdf, *t, band) };
+    CurvesPanel {
+        title: "plane of incidence".to_owned(),
+        x_label: "outgoing angle [°], the light comes from the left".to_owned(),
+        x_step: Some(30.0),
+        y_label: "BRDF [1/sr]".to_owned(),
+        curves: thetas_deg.iter().map(curve).collect(),
+        logarithmic: true,
+        level: None,
+    }
+}
+
+/// Albedo over the angle of incidence, a curve per band.
+#[must_use]
+pub fn albedo_panel(brdf: &dyn Brdf, names: &[String]) -> CurvesPanel {
+    let mut curves: Vec<NamedCurve> =
+        names.iter().map(|n| NamedCurve { name: n.clone(), points: Vec::new() }).collect();
+    let mut values = vec![0.0; brdf.bands()];
+    for theta in ALBEDO_DEG {
+        brdf.albedo(from_degrees(theta, 180.0), &mut values);
+        curves.iter_mut().zip(&values).for_each(|(c, v)| c.points.push((theta, *v)));
+    }
+    CurvesPanel {
+        title: "directional-hemispherical reflectance".to_owned(),
+        x_label: "angle of incidence [°]".to_owned(),
+        x_step: Some(15.0),
+        y_label: "albedo".to_owned(),
+        curves,
+        logarithmic: false,
+        level: Some(1.0),
+    }
+}
+
+/// From values per band to linear sRGB where a white diffuser is (1, 1, 1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tint(Vec<[f64; 3]>);
+
+impl Tint {
+    /// For wavelengths: the CIE 1931 observer under light that looks like the display's white.
+    #[must_use]
+    pub fn of_wavelengths(wavelengths_nm: &[f64]) -> Self {
+        let [x, y, z] = Observer::Cie1931.colour_matching_functions();
+        let Some(matrix) = rgb::SRGB.from_xyz() else { return Self::grey(wavelengths_nm.len()) };
+        let mut weights: Vec<DVec3> =
+            wavelengths_nm.iter().map(|w| matrix * dvec3(x.at(*w), y.at(*w), z.at(*w))).collect();
+        let white: DVec3 = weights.iter().copied().sum();
+        // Each channel's weights sum to one: white stays white, whatever the wavelengths.
+        if wavelengths_nm.len() < 8 || white.min_element() <= 0.0 {
+            return Self::grey(wavelengths_nm.len());
+        }
+        weights.iter_mut().for_each(|w| *w /= white);
+        Self(weights.into_iter().map(|w| w.to_array()).collect())
+    }
+
+    /// Three channels are red, green and blue; of others the mean is grey.
+    #[must_use]
+    pub fn of_channels(channels: usize) -> Self {
+        match channels {
+            3 => Self(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+            n => Self::grey(n),
+        }
+    }
+
+    fn grey(bands: usize) -> Self {
+        Self(vec![[1.0 / bands.max(1) as f64; 3]; bands])
+    }
+
+    fn pixel(&self, values: &[f64], exposure: f64) -> [u8; 3] {
+        let mut sum = [0.0; 3];
+        for (v, weight) in values.iter().zip(&self.0) {
+            sum.iter_mut().zip(weight).for_each(|(s, w)| *s += v * w);
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+        let encode = |v: f64| (255.0 * rgb::SRGB.encoding.encode((exposure * v).clamp(0.0, 1.0))).round() as u8;
+        sum.map(encode)
+    }
+}
+
+/// A sphere seen from afar, lit by a small lamp from the upper right behind the eye, in some ambient light from everywhere (by the
+/// albedo, so that mirrors are not black).
+#[must_use]
+pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
+    const SIDE: u32 = 320;
+    let light = dvec3(0.45, 0.55, 0.7).normalize();
+    let mut values = vec![0.0; brdf.bands()];
+    // Ambient light: the albedo towards the eye, tabulated over the angle.
+    let ambient: Vec<Vec<f64>> = ALBEDO_DEG
+        .map(|t| {
+            brdf.albedo(from_degrees(t, 0.0), &mut values);
+            values.clone()
+        })
+        .to_vec();
+    let mut pixels = Vec::with_capacity(3 * (SIDE * SIDE) as usize);
+    for i in 0..SIDE * SIDE {
+        let coordinate = |n: u32| 2.1 * (f64::from(n) + 0.5) / f64::from(SIDE) - 1.05;
+        let (x, y) = (coordinate(i % SIDE), -coordinate(i / SIDE));
+        let rest = 1.0 - x * x - y * y;
+        if rest <= 0.0 {
+            pixels.extend([236, 236, 238]);
+            continue;
+        }
+        let normal = dvec3(x, y, rest.sqrt());
+        let (t, b) = tangents(normal);
+        let local = |d: DVec3| dvec3(d.dot(t), d.dot(b), d.dot(normal));
+        let incident = local(light);
+        brdf.evaluate(incident, local(DVec3::Z), &mut values);
+        let theta = normal.z.acos().to_degrees();
+        let above = ALBEDO_DEG.partition_point(|a| *a < theta).clamp(1, ALBEDO_DEG.len() - 1);
+        let (low, high) = (ALBEDO_DEG[above - 1], ALBEDO_DEG[above]);
+        let share = ((theta - low) / (high - low)).min(1.0);
+        for (v, (a, b)) in values.iter_mut().zip(ambient[above - 1].iter().zip(&ambient[above])) {
+            *v = *v * incident.z.max(0.0) * std::f64::consts::PI + 0.12 * (a + share * (b - a));
+        }
+        pixels.extend(tint.pixel(&values, 0.9));
+    }
+    RasterPanel {
+        title: "lit sphere".to_owned(),
+        side: SIDE,
+        pixels,
+        caption: "a small lamp, and a little light from everywhere".to_owned(),
+    }
+}
+
+/// The lobe of one band in space, radius ∝ the cube root of the value: a needle on a broad foot shows both.
+#[must_use]
+pub fn surface_panel(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> SurfacePanel {
+    let incident = from_degrees(theta_i_deg, 180.0);
+    let mut values = vec![0.0; brdf.bands()];
+    let mut rings: Vec<Vec<[f64; 3]>> = (0..=44)
+        .map(|i| {
+            let theta = (2.0 * f64::from(i)).max(0.01);
+            (0..90)
+                .map(|k| {
+                    let direction = from_degrees(theta, 4.0 * f64::from(k));
+                    brdf.evaluate(incident, direction, &mut values);
+                    (direction * values[band].max(0.0).cbrt()).to_array()
+                })
+                .collect()
+        })
+        .collect();
+    let largest = rings.iter().flatten().map(|p| DVec3::from_array(*p).length()).fold(0.0, f64::max);
+    if largest > 0.0 {
+        rings.iter_mut().flatten().for_each(|p| *p = p.map(|v| v / largest));
+    }
+    SurfacePanel {
+        title: format!("lobe, light at {theta_i_deg}°"),
+        rings,
+        light: incident.to_array(),
+        caption: "radius: cube root of the BRDF, relative to the largest".to_owned(),
+    }
+}

@@ -1,0 +1,181 @@
+//! `photopic brdf` as a user meets it: descriptions, files, answers, errors, exit codes.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+/// Runs the program; exit code, standard output and standard error.
+fn run(arguments: &[&str], input: &str) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("photopic").expect("the program");
+    let output = command.arg("brdf").args(arguments).write_stdin(input).output().expect("it runs");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+    (output.status.code().expect("an exit code"), text(output.stdout), text(output.stderr))
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).expect("one JSON document")
+}
+
+#[test]
+fn values_come_as_text_table_and_json() {
+    // f = ρ/π.
+    let expected = 0.5 / std::f64::consts::PI;
+    let arguments = ["eval", "lambert(reflectance=0.5)", "--theta-i", "0:60:30", "--theta-o", "10,20", "-w", "450,550"];
+    let (code, table, _) = run(&[&arguments[..], &["--csv"]].concat(), "");
+    assert_eq!(code, 0);
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    assert_eq!(reader.headers().expect("headers").iter().next_back(), Some("brdf_per_sr"));
+    let rows: Vec<csv::StringRecord> = reader.records().map(|r| r.expect("a row")).collect();
+    // Three angles, two angles, two azimuths, two wavelengths.
+    assert_eq!(rows.len(), 3 * 2 * 2 * 2);
+    assert!(rows.iter().all(|r| (r[7].parse::<f64>().expect("a value") - expected).abs() < 1e-15));
+    assert_eq!((&rows[1][1], &rows[1][3], &rows[1][4], &rows[1][5]), ("0", "10", "0", "550"));
+    let (code, document, _) = run(&[&arguments[..], &["--json"]].concat(), "");
+    let result = &json(&document)["results"][0];
+    assert_eq!((code, result["rows"].as_array().map(Vec::len)), (0, Some(12)));
+    assert_eq!(result["wavelengths_nm"], serde_json::json!([450.0, 550.0]));
+    assert_eq!(result["rows"][11]["theta_i_deg"], 60.0);
+    let (code, text, _) = run(&arguments, "");
+    assert!(code == 0 && text.contains("0.159155"), "{text}");
+}
+
+#[test]
+fn a_check_answers_by_exit_code_and_says_where() {
+    let (code, document, _) = run(&["check", "ggx(alpha=0.2, medium=Au)", "--json"], "");
+    let result = &json(&document)["results"][0];
+    assert_eq!((code, &result["passes"]), (0, &Value::Bool(true)));
+    for key in ["reciprocity_max_relative", "albedo_max", "albedo_max_at_deg", "negative_fraction", "measured_fraction"]
+    {
+        assert!(result[key].is_number(), "{key}: {result}");
+    }
+    let (code, document, _) = run(&["check", "phong(kd=0.1, ks=1, n=20, form=classic)", "--json"], "");
+    let document = json(&document);
+    assert_eq!((code, &document["results"][0]["passes"]), (1, &Value::Bool(false)));
+    let codes: Vec<&str> =
+        document["findings"].as_array().expect("findings").iter().filter_map(|f| f["code"].as_str()).collect();
+    assert_eq!(codes, ["B001", "B002"]);
+    let (code, text, _) = run(&["check", "phong(kd=0.1, ks=1, n=20, form=classic)"], "");
+    assert!(
+        code == 1 && text.contains("not reciprocal") && text.contains("at θi") && text.contains("albedo 1."),
+        "{text}"
+    );
+    // Looser limits let it pass.
+    let (code, _, _) =
+        run(&["check", "phong(kd=0.1, ks=1, n=20, form=classic)", "--reciprocity", "1", "--albedo", "3"], "");
+    assert_eq!(code, 0);
+    // A lobe with negative values: f0 − c f1 with f1 above f0.
+    let negative = "sgd(rho_s=1, alpha=0.1, p=0.5, kappa=10, f0=0.1, f1=0.5, lambda=0, gamma=0, k=1, theta0=0)";
+    let (code, text, _) = run(&["check", negative], "");
+    assert!(code == 1 && text.contains("B003: negative in"), "{text}");
+}
+
+#[test]
+fn files_hold_materials_and_standard_input_is_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("gold.toml");
+    let text = "name = \"gold paint\"\nsum = [\"0.5*lambert(reflectance=0.3)\", { weight = 0.5, model = \"ggx\", alpha = 0.1, medium = \"Au\" }]\n";
+    fs::write(&path, text).expect("written");
+    let path = path.to_str().expect("a plain path");
+    let spelt = "0.5*lambert(reflectance=0.3) + 0.5*ggx(alpha=0.1, medium=Au)";
+    let rows = |argument: &str, input: &str| {
+        let (code, document, stderr) = run(&["eval", argument, "--json"], input);
+        assert_eq!(code, 0, "{stderr}");
+        let document = json(&document);
+        (document["results"][0]["rows"].clone(), document["inputs"][0]["sha256"].is_string())
+    };
+    assert_eq!(rows(path, ""), (rows(spelt, "").0, true));
+    assert_eq!(rows("-", text).0, rows(spelt, "").0);
+    assert!(!rows(spelt, "").1);
+    let (_, text, _) = run(&["info", path], "");
+    assert!(text.contains("[gold paint]") && text.contains("hemispherical – hemispherical"), "{text}");
+}
+
+#[test]
+fn errors_have_a_place_and_exit_with_2() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).expect("written");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let (empty, bad) = (file("empty.toml", ""), file("bad.toml", "model = \"ggx\"\nalpha = 0.1\nmedium = \"Xx\"\n"));
+    let binary = folder.path().join("binary.toml");
+    fs::write(&binary, [0xff, 0xfe, 0x00]).expect("written");
+    for (argument, expected) in [
+        ("nowhere.toml", "nowhere.toml: there is no such file; expected a file, or a description"),
+        ("ggx(alpha=3, eta=1.5)", "1:11: `alpha` is 3; expected a number from 1e-6 to 1"),
+        ("ggx(alhpa=3)", "1:5: `ggx` has no parameter `alhpa`; expected alpha: a number from 1e-6 to 1 (roughness)"),
+        (empty.as_str(), "empty.toml:1:1: found a table without material"),
+        (bad.as_str(), "bad.toml:3:10: no substance is called `Xx`"),
+        (binary.to_str().expect("a plain path"), "not UTF-8"),
+    ] {
+        for verb in ["info", "check", "eval"] {
+            let (code, _, stderr) = run(&[verb, argument], "");
+            assert!(code == 2 && stderr.contains(expected), "{verb} {argument}: {code} {stderr}");
+        }
+        let picture = folder.path().join("x.svg");
+        let (code, _, stderr) = run(&["plot", argument, "-o", picture.to_str().expect("a plain path")], "");
+        assert!(code == 2 && stderr.contains(expected) && !picture.exists(), "plot {argument}: {stderr}");
+    }
+    // The rest is still done.
+    let (code, text, _) = run(&["eval", "nowhere.toml", "lambert(reflectance=1)"], "");
+    assert!(code == 2 && text.contains("0.318310"), "{text}");
+    for (arguments, expected) in [
+        (vec!["eval", "mirror()", "--theta-i", "100"], "expected 0 to 90 degrees"),
+        (vec!["eval", "mirror()", "--theta-i", "0:80"], "expected a range"),
+        (vec!["eval", "mirror()", "--theta-i", "0:80:-1"], "by a step above 0"),
+        (vec!["eval", "ggx(alpha=0.1, medium=Au)", "-w", "1500"], "`Au` is known from 354.2 to 892 nm"),
+        (vec!["plot", "mirror()", "-o", "x.jpg"], "ending in .svg or .png"),
+    ] {
+        let (code, _, stderr) = run(&arguments, "");
+        assert!(code == 2 && stderr.contains(expected), "{arguments:?}: {stderr}");
+    }
+}
+
+#[test]
+fn dirac_lobes_are_said_to_be_missing_from_values() {
+    let (code, _, stderr) = run(&["eval", "mirror()"], "");
+    assert!(code == 0 && stderr.contains("B006") && stderr.contains("brdf info"), "{stderr}");
+    let (_, document, _) = run(&["info", "mirror(reflectance=0.9)", "--json"], "");
+    let result = &json(&document)["results"][0];
+    assert_eq!((&result["kind"], &result["albedo"][3]["albedo"][0]), (&"delta".into(), &0.9.into()));
+    // Both directional on the mirror direction: there is no value.
+    assert_eq!(result["reflectances"][0]["reflectance_factor"], Value::Null);
+    assert_eq!(result["reflectances"].as_array().map(Vec::len), Some(9));
+}
+
+#[test]
+fn pictures_are_drawn_in_both_formats() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (kind, name) in [
+        ("all", "a.svg"),
+        ("polar", "b.png"),
+        ("log", "c.svg"),
+        ("albedo", "d.svg"),
+        ("sphere", "e.png"),
+        ("lobe", "f.svg"),
+    ] {
+        let path = folder.path().join(name);
+        let text = path.to_str().expect("a plain path");
+        let (code, _, stderr) = run(&["plot", "ggx(alpha=0.2, medium=Cu)", "-k", kind, "-o", text], "");
+        assert_eq!(code, 0, "{kind}: {stderr}");
+        let bytes = fs::read(Path::new(text)).expect("a picture");
+        assert!(
+            if name.ends_with("png") {
+                bytes.starts_with(b"\x89PNG")
+            } else {
+                bytes.starts_with(b"<svg") || bytes.starts_with(b"<?xml")
+            },
+            "{kind}"
+        );
+        if kind == "all" {
+            let svg = String::from_utf8(bytes).expect("text");
+            // The lobe at 45°, the axis of the logarithm, the level of an albedo of 1, the sphere.
+            for word in ["light at 45°", "BRDF [1/sr]", "directional-hemispherical reflectance", "lit sphere"] {
+                assert!(svg.contains(word), "{word}");
+            }
+        }
+    }
+}
