@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![warn(missing_docs)]
 
+pub mod brdf;
 pub mod cli;
 pub mod colorimetry;
 pub mod constants;
