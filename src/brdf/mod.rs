@@ -36,6 +36,9 @@ use crate::math::sampling;
 
 pub mod abc;
 pub mod ashikhmin_shirley;
+pub mod compress;
+pub mod coordinates;
+pub mod format;
 pub mod fresnel;
 pub mod lambert;
 pub mod microfacet;
@@ -46,6 +49,7 @@ pub mod reflectance;
 pub mod sgd;
 pub mod specular;
 pub mod sum;
+pub mod table;
 pub mod ward;
 
 pub use parameter::Error;
