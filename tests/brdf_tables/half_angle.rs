@@ -75,6 +75,15 @@ fn bins_are_those_of_the_exact_angles() {
 }
 
 #[test]
+fn poles_are_in_the_first_bins() {
+    let table = numbered(Resolution::MERL);
+    // ω_i = ω_o: no azimuth about the half vector, which counts as 0; both along the normal: no angle at all.
+    assert_eq!(table.bin_of(DVec3::Z, DVec3::Z), 0);
+    let grazing = from_angles(1.57, 0.3);
+    assert_eq!(table.bin_of(grazing, grazing), 89 * 90 * 180);
+}
+
+#[test]
 fn centres_are_in_their_bins() {
     let table = numbered(Resolution::MERL);
     for bin in (0..Resolution::MERL.bins()).step_by(7) {

@@ -150,7 +150,8 @@ impl HalfAngle {
         // φ_d modulo 180°: the half plane of positive sines. Without short cuts, as the sign is anyone's guess.
         let turned = (sideways < 0.0) | ((sideways == 0.0) & (along < 0.0));
         let along = if turned { -along } else { along };
-        let sum = along.abs() + sideways.abs();
+        // Not zero where θ_d is and there is no azimuth.
+        let sum = (along.abs() + sideways.abs()).max(f64::MIN_POSITIVE);
         let h = self.half.find(across2, length2, fourth_root);
         // |ω_i + ω_o|² + |ω_i − ω_o|² = 4 for unit vectors.
         let d = self.difference.find(4.0 - length2, 4.0, |s| s);
