@@ -1,5 +1,8 @@
 //! What all targets hold a reader to: no panic, and what it reads is a spectrum that stands every further step.
 
+use photopic::brdf::format as tables;
+use photopic::brdf::table::Known;
+use photopic::geometry::direction::from_degrees;
 use photopic::luminaire::format as lamps;
 use photopic::report::lamp as figures;
 use photopic::spectrum::format::{Format, ReadOptions, read};
@@ -42,5 +45,20 @@ pub fn lamp(bytes: &[u8], format: Option<lamps::Format>) {
             }
             Err(error) => assert!(error.to_string().contains("expected"), "{error}"),
         }
+    }
+}
+
+/// Reads a BRDF table as one format, or as the content tells: every place of whatever comes out is a finite value, or missing.
+pub fn brdf(bytes: &[u8], format: Option<tables::Format>) {
+    match tables::open(bytes, format) {
+        Ok(file) => {
+            let table = &file.value.table;
+            let mut values = vec![0.0; table.channels().len()];
+            for (theta_i, theta_o, phi_o) in [(0.0, 0.0, 0.0), (30.0, 30.0, 180.0), (80.0, 10.0, 77.0), (45.0, 89.0, 300.0)] {
+                let known = table.value(from_degrees(theta_i, 20.0), from_degrees(theta_o, phi_o), &mut values);
+                assert!(values.iter().all(|v| !v.is_nan()) || known == Known::Missing);
+            }
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
     }
 }

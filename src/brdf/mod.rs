@@ -40,7 +40,10 @@ use crate::math::sampling;
 pub mod abc;
 pub mod ashikhmin_shirley;
 pub mod audit;
+pub mod compress;
+pub mod coordinates;
 pub mod description;
+pub mod format;
 pub mod fresnel;
 pub mod lambert;
 pub mod medium;
@@ -52,6 +55,7 @@ pub mod reflectance;
 pub mod sgd;
 pub mod specular;
 pub mod sum;
+pub mod table;
 pub mod ward;
 
 pub use parameter::Error;

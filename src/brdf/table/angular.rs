@@ -1,0 +1,72 @@
+//! A grid in the angles of both directions, azimuths on closed circles: anisotropic materials as UTIA measured them.
+//!
+//! Linear in θ_i, φ_i, θ_o and φ_o. Beyond the last θ the value of the last is taken, and is inferred.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::axis::{self, Place, check, locate_on_circle};
+use super::{Channel, Error, Known, blend};
+use crate::geometry::direction::{phi, theta};
+
+/// A table over (θ_i, φ_i, θ_o, φ_o).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Angular {
+    thetas_rad: Vec<f64>,
+    azimuths: usize,
+    channels: Vec<Channel>,
+    /// φ_o fastest, then θ_o, φ_i, θ_i; the channels of a node side by side. NaN where missing.
+    values: Vec<f64>,
+}
+
+impl Angular {
+    /// A table over the same angles on both sides: θ as given (in radians, rising), `azimuths` of them at equal steps from 0.
+    /// Values in 1/sr, NaN where missing, φ_o fastest, then θ_o, φ_i, θ_i; the channels of a node side by side.
+    ///
+    /// # Errors
+    /// [`Error`] for angles that do not rise and other numbers of values.
+    pub fn new(thetas_rad: Vec<f64>, azimuths: usize, channels: Vec<Channel>, values: Vec<f64>) -> Result<Self, Error> {
+        check("θ", &thetas_rad)?;
+        let expected = (thetas_rad.len() * azimuths).pow(2) * channels.len();
+        if values.len() != expected || expected == 0 {
+            return Err(Error::Count { what: "values", found: values.len(), expected });
+        }
+        Ok(Self { thetas_rad, azimuths, channels, values })
+    }
+
+    /// What the values of a node belong to.
+    #[must_use]
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// Number of nodes, and how many are missing.
+    #[must_use]
+    pub fn coverage(&self) -> (usize, usize) {
+        let nodes = self.values.chunks_exact(self.channels.len());
+        (nodes.len(), nodes.filter(|n| n.iter().any(|v| v.is_nan())).count())
+    }
+
+    /// Writes the value at two directions.
+    pub fn value(&self, incident: DVec3, outgoing: DVec3, values: &mut [f64]) -> Known {
+        let polar = |d: DVec3| axis::locate(&self.thetas_rad, theta(d));
+        let azimuth = |d: DVec3| locate_on_circle(self.azimuths, TAU, phi(d));
+        let places = [polar(incident), azimuth(incident), polar(outgoing), azimuth(outgoing)];
+        let known = blend((0..16).map(|corner| self.node(&places, corner)), values);
+        if places.iter().any(|p| p.outside) { known.max(Known::Inferred) } else { known }
+    }
+
+    /// Weight and values of one of the sixteen nodes around a place.
+    fn node(&self, places: &[Place; 4], corner: usize) -> (f64, &[f64]) {
+        let counts = [self.thetas_rad.len(), self.azimuths, self.thetas_rad.len(), self.azimuths];
+        let (mut index, mut weight) = (0, 1.0);
+        for (k, (place, count)) in places.iter().zip(counts).enumerate() {
+            let side = corner >> k & 1;
+            index = index * count + place.nodes[side];
+            weight *= place.weights[side];
+        }
+        let n = self.channels.len();
+        (weight, &self.values[index * n..][..n])
+    }
+}
