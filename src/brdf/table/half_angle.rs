@@ -147,15 +147,15 @@ impl HalfAngle {
         } else {
             (incident.x, incident.y)
         };
-        // φ_d modulo 180°: the half plane of positive sines. Without short cuts, as the sign is anyone's guess.
+        // φ_d modulo 180°: the half plane of positive sines. Without a branch, as nobody can guess the sign.
         let turned = (sideways < 0.0) | ((sideways == 0.0) & (along < 0.0));
-        let along = if turned { -along } else { along };
-        // Not zero where θ_d is and there is no azimuth.
-        let sum = (along.abs() + sideways.abs()).max(f64::MIN_POSITIVE);
+        let along = f64::from_bits(along.to_bits() ^ u64::from(turned) << 63);
+        let sum = along.abs() + sideways.abs();
         let h = self.half.find(across2, length2, fourth_root);
         // |ω_i + ω_o|² + |ω_i − ω_o|² = 4 for unit vectors.
         let d = self.difference.find(4.0 - length2, 4.0, |s| s);
-        let p = self.azimuth.find(sum - along, sum, |p| p);
+        // Where θ_d is 0 there is no azimuth.
+        let p = if sum > 0.0 { self.azimuth.find(sum - along, sum, |p| p) } else { 0 };
         (h * self.resolution.theta_d + d) * self.resolution.phi_d + p
     }
 
