@@ -10,7 +10,8 @@ use super::lcs::Lcs;
 /// # Reference
 /// IES TM-15-11, Addendum A, tables A-1 to A-3. Public texts confirm the limits of U2 and U3 (user's guide of the IDA/IES Model Lighting
 /// Ordinance 2011: 50 lm and 500 lm in each of UL and UH) and those of U0, U1 and of FVH and BVH in G0 (I. Ashdown, "Photometric Imprecision Can Limit
-/// BUG Rating Utility": 0 lm, 10 lm, 10 lm). The crate `eulumdat` has other limits of G (FH 180, 600, 2000, 4000 lm), of which TM-15 knows none.
+/// BUG Rating Utility": 0 lm, 10 lm, 10 lm). The others
+/// could not be held against a public copy; the crate `eulumdat` has other limits of G (FH 180, 600, 2000, 4000 lm).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BugRating {
     /// Backlight.

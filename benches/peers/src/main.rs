@@ -3,9 +3,8 @@
 //!
 //! Implementations: `photopic`, `photopic-1` (one spectrum at a time), `colorimetry` (the crate), `colorimetry-1nm` (its
 //! resampling to 401 samples done beforehand). Tasks: `xyz`, `cct`, `cri`, `tm30`, and of photopic `cold`: the first
-//! conversion in a process, tables and plans included. `lm63-plain` and `lm63-long` of photopic and `eulumdat`: see `lamps`.
 //! conversion in a process, tables and plans included, and `image`: 1024 rows of 1024 pixels of 31 bands to X, Y, Z, beside
-//! which `read` reads the same bytes.
+//! which `read` reads the same bytes. `lm63-plain` and `lm63-long` of photopic and `eulumdat`: see `lamps`.
 
 mod lamps;
 #[path = "../../samples/mod.rs"]
