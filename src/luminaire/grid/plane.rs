@@ -173,7 +173,8 @@ impl Plane {
 /// `p = 0.2 · 5^(log₁₀ d)`, at most 10 m, with d the longer side, or the shorter one where the longer is twice as long or more.
 ///
 /// # Reference
-/// EN 12464-1:2021, 4.4 (grid system); EN 12193 uses the same formula.
+/// EN 12464-1, illuminance grid, as Fagerhult ("Number of calculation points", with the table of examples) and Esse-ci ("Griglie di
+/// calcolo", with the rule for long areas, from EN 12193) print it; the standard itself was not at hand.
 #[must_use]
 pub fn standard_step_m(a_m: f64, b_m: f64) -> f64 {
     let (short, long) = (a_m.min(b_m), a_m.max(b_m));
@@ -216,8 +217,8 @@ mod tests {
 
     #[test]
     fn the_standard_step_is_that_of_en_12464_1_table_a1() {
-        // EN 12464-1, table of grid sizes: length of area, distance, printed to one digit. Its two rows below 1 m have three points
-        // at least instead, which `Plane` leaves to the user.
+        // The table of EN 12464-1 as Fagerhult prints it: length of area, distance, one digit. Left out are its rows of 0.40 m
+        // (0.15 m) and 0.60 m (0.20 m): three points at least decide there, not the formula, which gives 0.11 m and 0.14 m.
         for (d, printed) in
             [(1.0, "2e-1"), (2.0, "3e-1"), (5.0, "6e-1"), (10.0, "1e0"), (25.0, "2e0"), (50.0, "3e0"), (100.0, "5e0")]
         {
