@@ -220,10 +220,10 @@ impl<Kind> Located<Kind> {
         self
     }
 
-    /// The same error, in the file named.
+    /// The same error, in the file named; one that names a file already, such as a band of a stack, keeps it.
     #[must_use]
     pub fn in_file(mut self, path: &str) -> Self {
-        self.0.location.path = Some(path.to_owned());
+        self.0.location.path.get_or_insert_with(|| path.to_owned());
         self
     }
 
@@ -289,6 +289,7 @@ mod tests {
         assert_eq!(bare.to_string(), "found `x`; expected a number");
         assert_eq!(bare.in_file("a.ies").to_string(), "a.ies: found `x`; expected a number");
         let full = Error::at(3, 7, NotANumber("x")).in_file("a.ies").with_hint("is it a decimal comma?");
+        assert_eq!(full.clone().in_file("folder"), full);
         assert_eq!(full.to_string(), "a.ies:3:7: found `x`; expected a number; is it a decimal comma?");
         assert_eq!((full.kind(), full.hint()), (&NotANumber("x"), Some("is it a decimal comma?")));
         assert_eq!(Error::whole(NotANumber("x")).below(2).location(), &Location::at(3, 1));

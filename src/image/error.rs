@@ -1,9 +1,8 @@
 //! Why an image was refused or could not be written: where, what was found, what was expected.
 
-use std::fmt;
 use std::io;
 
-use crate::finding::Location;
+use crate::finding::{Located, Location};
 
 /// What is wrong.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -89,75 +88,11 @@ impl From<io::Error> for ErrorKind {
     }
 }
 
-/// An error with its place and, where there is one, advice.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Error(Box<Report>);
-
-#[derive(Debug, Clone, PartialEq)]
-struct Report {
-    location: Location,
-    kind: ErrorKind,
-    hint: Option<String>,
-}
-
-impl Error {
-    /// An error at a place.
-    #[must_use]
-    pub fn new(location: Location, kind: impl Into<ErrorKind>) -> Self {
-        Self(Box::new(Report { location, kind: kind.into(), hint: None }))
-    }
-
-    /// The same error with advice.
-    #[must_use]
-    pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
-        self.0.hint = Some(hint.into());
-        self
-    }
-
-    /// What is wrong.
-    #[must_use]
-    pub fn kind(&self) -> &ErrorKind {
-        &self.0.kind
-    }
-
-    /// Where.
-    #[must_use]
-    pub fn location(&self) -> &Location {
-        &self.0.location
-    }
-
-    /// What the user can do.
-    #[must_use]
-    pub fn hint(&self) -> Option<&str> {
-        self.0.hint.as_deref()
-    }
-
-    /// The same error, in the file named.
-    #[must_use]
-    pub fn in_file(mut self, path: &str) -> Self {
-        self.0.location.path.get_or_insert_with(|| path.to_owned());
-        self
-    }
-}
+/// An [`ErrorKind`] with its place and a hint.
+pub type Error = Located<ErrorKind>;
 
 impl<K: Into<ErrorKind>> From<K> for Error {
     fn from(kind: K) -> Self {
         Self::new(Location::default(), kind)
-    }
-}
-
-impl std::error::Error for Error {}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let place = self.0.location.to_string();
-        if !place.is_empty() {
-            write!(f, "{place}: ")?;
-        }
-        write!(f, "{}", self.0.kind)?;
-        match &self.0.hint {
-            Some(hint) => write!(f, "; {hint}"),
-            None => Ok(()),
-        }
     }
 }
