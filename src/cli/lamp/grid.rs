@@ -264,9 +264,9 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
         csv(&result).into_bytes()
     } else {
         format!(
-            "{}: {} luminaires\n\n{}",
+            "{}: {}\n\n{}",
             title(files, &lamps),
-            placed.len(),
+            if placed.len() == 1 { "1 luminaire".to_owned() } else { format!("{} luminaires", placed.len()) },
             report::grid_text(&result, a.maintenance)
         )
         .into_bytes()

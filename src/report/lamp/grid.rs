@@ -119,7 +119,7 @@ pub fn grid_text(e: &Illuminance, maintenance_factor: f64) -> String {
             ),
         ),
         None => {
-            line("as points", "no point is near an opening of known size: all luminaires taken as points".to_owned())
+            line("as points", "all luminaires taken as points: none is near, or its opening is not known".to_owned())
         }
     }
     let pick = |count: usize| -> Vec<usize> {
@@ -129,7 +129,7 @@ pub fn grid_text(e: &Illuminance, maintenance_factor: f64) -> String {
     let (columns, rows) = (pick(m), pick(n));
     let _ = writeln!(
         out,
-        "\n  {unit}, along the first side to the right, along the second upwards [m]{}\n",
+        "\n  {unit}, distance from the first corner along the first side to the right, along the second upwards [m]{}\n",
         if m > SHOWN || n > SHOWN { ", a selection" } else { "" }
     );
     let (u, v) = (plane.u_m(), plane.v_m());
