@@ -24,6 +24,7 @@ pub mod plan;
 pub mod source;
 pub mod statistics;
 pub mod target;
+pub mod tristimulus;
 
 pub use beside::Beside;
 pub use converted::Converted;

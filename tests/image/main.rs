@@ -9,5 +9,6 @@ mod envi;
 mod exr;
 mod kernel;
 mod npy;
+mod rgb;
 mod stack;
 mod streaming;
