@@ -228,7 +228,8 @@ fn describe(meta: &MetaData, findings: &mut Vec<Finding>) -> Result<(Description
         let found = description.attribute("spectralLayoutVersion").map_or("no".to_owned(), |v| format!("`{v}` as"));
         findings.push(Finding::info("I005", format!("{found} spectralLayoutVersion; read as 1.0")));
     }
-    if let Some(unit) = description.attribute("photopic:unit").map(str::to_owned) {
+    // The writer spells out what is not Latin text.
+    if let Some(unit) = description.attribute("photopic:unit").map(|unit| unit.replace("m2", "m²")) {
         let plain = |m: Meaning| matches!(m, Meaning::Photopic | Meaning::Weighted | Meaning::Tristimulus(_));
         description.channels.iter_mut().filter(|c| plain(c.meaning)).for_each(|c| c.unit.clone_from(&unit));
     }
