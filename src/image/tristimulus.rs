@@ -20,7 +20,7 @@ use crate::colorimetry::Observer;
 use crate::colorimetry::adaptation::Transform;
 use crate::colorimetry::chromaticity::xyz_of_xy;
 use crate::colorimetry::rgb::{Encoding, Space, same_xy};
-use crate::finding::{Checked, Finding};
+use crate::finding::{Checked, Finding, Severity};
 use crate::photometry::luminous::{Efficacy, Efficiency};
 
 /// What the planes of an image are.
@@ -56,7 +56,7 @@ impl Planes {
         }
     }
 
-    /// Refuses what needs a spectrum.
+    /// Whether a target follows from the planes: false where it needs a spectrum.
     fn lead_to(&self, target: &Target) -> bool {
         match (self, target) {
             (Self::Rgb(_), Target::Xyz(observer)) => *observer == Observer::Cie1931,
@@ -110,7 +110,9 @@ pub(super) fn plan(image: &Description, target: &Target, settings: &Settings) ->
     let scale = Scale::new(&planes, stated, target, settings)?;
     if scale.unit.is_empty() {
         let message = format!("nobody states the luminance of white: {target} is relative to it");
-        findings.push(Finding::info("I100", message).hint("say --white-luminance for cd/m²"));
+        // RGB is looked at as it is; a luminance is taken for one.
+        let severity = if matches!(target, Target::Rgb { .. }) { Severity::Info } else { Severity::Warning };
+        findings.push(Finding::new("I100", severity, message).hint("say --white-luminance for cd/m²"));
     }
     let from = match &planes {
         Planes::Rgb(rgb) => Some(rgb.space),

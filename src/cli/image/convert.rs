@@ -321,6 +321,10 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
                 None => Box::new(converted),
             }
         }
+        None if source.description().bands().is_empty() && settings.white_luminance.is_some() => {
+            let message = "--to cube leaves samples as they are; expected no --white-luminance, or --to srgb or xyz";
+            return Err(Failure::Message(format!("{path}: {message}")));
+        }
         None => cube(source, arguments, &settings, options.format).map_err(refused)?,
     };
     let findings = save(&arguments.output, &opened.files, &mut source, options)?;

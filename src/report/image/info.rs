@@ -39,7 +39,7 @@ pub fn info(image: &Description, statistics: &Statistics) -> Map<String, Value> 
         }
     }
     if let Some(rgb) = &image.rgb {
-        set("rgb", space(rgb));
+        set("rgb", space(rgb, image.find(Meaning::Primary(0)).is_some()));
     }
     let channels = image.channels.iter().zip(&statistics.channels).map(|(channel, s)| {
         let mut out = Map::new();
@@ -77,12 +77,15 @@ pub fn info(image: &Description, statistics: &Statistics) -> Map<String, Value> 
     out
 }
 
-fn space(rgb: &RgbSpace) -> Value {
+/// The space of R, G, B; of other planes only the luminance of 1 means something.
+fn space(rgb: &RgbSpace, primaries: bool) -> Value {
     let mut out = Map::new();
-    out.insert("space".to_owned(), rgb.space.key.into());
-    out.insert("encoded".to_owned(), rgb.encoded.into());
-    out.insert("primaries_xy".to_owned(), json!(rgb.space.primaries));
-    out.insert("white_xy".to_owned(), json!(rgb.space.white));
+    if primaries {
+        out.insert("space".to_owned(), rgb.space.key.into());
+        out.insert("encoded".to_owned(), rgb.encoded.into());
+        out.insert("primaries_xy".to_owned(), json!(rgb.space.primaries));
+        out.insert("white_xy".to_owned(), json!(rgb.space.white));
+    }
     if let Some(luminance) = rgb.white_luminance {
         out.insert("white_luminance_cd_per_m2".to_owned(), luminance.into());
     }
@@ -130,7 +133,12 @@ pub fn info_text(path: &str, image: &Description, statistics: &Statistics) -> St
         let white =
             rgb.white_luminance.map_or("of unknown luminance".to_owned(), |w| format!("{} cd/m²", significant(w, 6)));
         let kind = if rgb.encoded { "encoded" } else { "linear" };
-        line(format!("  RGB: {kind} {}, white {}, (1, 1, 1) is {white}", rgb.space.name, rgb.space.white_name));
+        line(match image.find(Meaning::Primary(0)) {
+            Some(_) => {
+                format!("  RGB: {kind} {}, white {}, (1, 1, 1) is {white}", rgb.space.name, rgb.space.white_name)
+            }
+            None => format!("  1 is {white}"),
+        });
     }
     let width = image.channels.iter().map(|c| c.name.chars().count()).max().unwrap_or(0).max(7);
     line(format!("  {:width$} {:>12} {:>12} {:>12}", "channel", "min", "mean", "max"));

@@ -141,7 +141,7 @@ impl Lost {
         let mut out = Vec::new();
         if self.negative > 0 {
             let message = format!("{} negative samples became 0: Radiance pictures have none", self.negative);
-            out.push(Finding::warning("I120", message).hint("--to radiance has fewer, --to xyz none"));
+            out.push(Finding::warning("I120", message).hint("--to xyz has none"));
         }
         if self.not_a_number > 0 {
             let message = format!("{} samples that are not a number became 0", self.not_a_number);
