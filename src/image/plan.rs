@@ -29,9 +29,10 @@ pub struct Settings {
     pub unit: Option<SpectralUnit>,
     /// Light that falls on a reflectance image, by name, relative or not: only its shape counts.
     pub illuminant: Option<(String, Spectrum)>,
-    /// Luminance, cd/m²: of RGB (1, 1, 1) for light; of the perfect diffuser for reflectance.
+    /// Luminance, cd/m²: of RGB (1, 1, 1) for light, and of 1 in planes whose file does not state it; of the perfect diffuser for
+    /// reflectance.
     pub white_luminance: Option<f64>,
-    /// Adaptation of RGB from the illuminant of a reflectance image to the white of the space.
+    /// Adaptation of RGB from the illuminant of a reflectance image, or the white of another space, to the white of the space.
     pub adaptation: Transform,
 }
 

@@ -110,10 +110,12 @@ struct MeaningArgs {
     /// cie-2008-v-10deg.
     #[arg(long, value_name = "NAME", default_value_t)]
     efficiency: Efficiency,
-    /// Luminance (cd/m2) of RGB (1, 1, 1); for reflectance, of the perfect diffuser.
+    /// Luminance (cd/m2) of RGB (1, 1, 1): of the output, and of an input that does not state its own; for reflectance, of the
+    /// perfect diffuser.
     #[arg(long, value_name = "CD_PER_M2", value_parser = positive)]
     white_luminance: Option<f64>,
-    /// Chromatic adaptation of RGB from the illuminant of a reflectance image: bradford, cat16, none.
+    /// Chromatic adaptation of RGB from the illuminant of a reflectance image, or from the white of another RGB space: bradford,
+    /// cat16, none.
     #[arg(long, default_value = "bradford")]
     adaptation: Transform,
     /// Rule; by default CIE 15 summation on equal steps up to 5 nm, else the exact integral of straight lines.
