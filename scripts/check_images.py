@@ -5,7 +5,8 @@
 
 A cube of 512 x 512 pixels and 31 bands is made with numpy. OpenEXR and colour-science's reader of the layout of Fichet et al.
 read the EXR that photopic makes of it, Spectral Python the ENVI images in each interleave, numpy the arrays; colour-science
-calculates X, Y, Z of 1000 random pixels, and of reflectances under D65. Where ../shared/image stands beside the checkout, its
+calculates X, Y, Z of 1000 random pixels, and of reflectances under D65. Radiance (the pyradiance wheel), OpenEXR and OpenImageIO
+read the pictures in colours, and are read. Where ../shared/image stands beside the checkout, its
 files, written by other programs, are read as well. Exit status 1 when a line fails, 2 when nothing could be compared.
 """
 
@@ -26,8 +27,11 @@ import numpy as np  # noqa: E402
 with contextlib.redirect_stderr(io.StringIO()):
     import colour  # noqa: E402
 import OpenEXR  # noqa: E402
+import OpenImageIO  # noqa: E402
+import pyradiance  # noqa: E402
 import spectral  # noqa: E402
 
+RADIANCE = Path(pyradiance.__file__).resolve().parent / "bin"
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared" / "image"
 WAVELENGTHS = np.arange(400.0, 701.0, 10.0)
@@ -155,10 +159,46 @@ def shared_files(checks, folder):
         checks.line(f"{name}.exr through photopic and back to colour-science ({component})", difference, 0.0)
 
 
+def pictures(checks, folder):
+    """RGB: Radiance, OpenEXR and OpenImageIO read what we write, and we read what they write."""
+    rng = np.random.default_rng(20260102)
+    pixels = (10.0 ** rng.uniform(-2, 2, (40, 60, 1)) * rng.uniform(0.2, 1, (40, 60, 3))).astype(np.float32)
+    header = {"chromaticities": (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290), "whiteLuminance": 80.0}
+    parts = {name: np.ascontiguousarray(pixels[..., k]) for k, name in enumerate("RGB")}
+    OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION, **header}, parts).write(str(folder / "rgb.exr"))
+    srgb = colour.RGB_COLOURSPACES["sRGB"].copy()
+    srgb.use_derived_transformation_matrices(True)
+    xyz = 80.0 * pixels.astype(float) @ srgb.matrix_RGB_to_XYZ.T
+    checks.run("convert", folder / "rgb.exr", "-o", folder / "rgb_xyz.npy", "--to", "xyz")
+    checks.line("XYZ of an EXR of OpenEXR, against colour-science", relative(np.load(folder / "rgb_xyz.npy"), xyz), 2e-6)
+
+    # Radiance keeps eight bits of the largest component, cut off; half a unit comes back.
+    step = 1 / 128
+    for name, target in (("rgbe", "radiance"), ("xyze", "xyz")):
+        out = folder / f"{name}.pic"
+        checks.run("convert", folder / "rgb.exr", "-o", out, "--to", target, "--adaptation", "none")
+        brightness = subprocess.run(
+            [RADIANCE / "pvalue", "-o", "-h", "-H", "-d", "-b", out], check=True, capture_output=True, text=True
+        ).stdout
+        factor = 179.0 if name == "rgbe" else 1.0
+        got = factor * np.array(brightness.split(), float).reshape(40, 60)
+        checks.line(f"luminance that Radiance's pvalue finds in our {name}", relative(got, xyz[..., 1]), 3 * step)
+    text = subprocess.run([RADIANCE / "ra_xyze", "-u", folder / "rgbe.pic"], check=True, capture_output=True).stdout
+    (folder / "theirs.pic").write_bytes(text)
+    checks.run("convert", folder / "theirs.pic", "-o", folder / "theirs.npy", "--to", "luminance")
+    checks.line("luminance of ra_xyze's XYZE", relative(np.load(folder / "theirs.npy"), xyz[..., 1]), 5 * step)
+
+    checks.run("convert", folder / "rgb.exr", "-o", folder / "rgb.png", "--sixteen-bit", "--white-luminance", 8000)
+    got = OpenImageIO.ImageBuf(str(folder / "rgb.png")).get_pixels(OpenImageIO.FLOAT)
+    want = colour.models.eotf_inverse_sRGB(np.clip(pixels.astype(float) / 100.0, 0, 1))
+    checks.line("16-bit PNG read by OpenImageIO, against colour-science's curve", float(np.max(np.abs(got - want))), 8e-6)
+
+
 def main():
     checks = Checks(Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "target" / "release" / "photopic").resolve())
     with tempfile.TemporaryDirectory() as folder:
         own_files(checks, Path(folder))
+        pictures(checks, Path(folder))
         shared_files(checks, Path(folder))
     print("all hold" if not checks.failed else f"{checks.failed} fail")
     sys.exit(1 if checks.failed else 0)

@@ -70,6 +70,16 @@ pub const ACESCG: Space = Space {
     white_name: "ACES (≈ D60)",
     encoding: Encoding::Linear,
 };
+/// Radiance's own primaries with the equal-energy white (`src/common/color.h`: .640 .330, .290 .600, .150 .060): luminance is
+/// .265 R + .670 G + .065 B.
+pub const RADIANCE: Space = Space {
+    key: "radiance",
+    name: "Radiance RGB",
+    primaries: [[0.640, 0.330], [0.290, 0.600], [0.150, 0.060]],
+    white: [1.0 / 3.0, 1.0 / 3.0],
+    white_name: "E",
+    encoding: Encoding::Linear,
+};
 /// The spaces reported.
 pub const SPACES: [Space; 4] = [SRGB, DISPLAY_P3, REC2020, ACESCG];
 
@@ -82,27 +92,74 @@ impl Encoding {
             Self::Linear => v,
             Self::Srgb if v <= 0.003_130_8 => 12.92 * v,
             Self::Srgb => 1.055 * v.powf(1.0 / 2.4) - 0.055,
-            Self::Rec2020 => {
-                const ALPHA: f64 = 1.099_296_826_809_44;
-                const BETA: f64 = 0.018_053_968_510_807;
-                if v < BETA { 4.5 * v } else { ALPHA * v.powf(0.45) - (ALPHA - 1.0) }
-            }
+            Self::Rec2020 if v < BETA => 4.5 * v,
+            Self::Rec2020 => ALPHA * v.powf(0.45) - (ALPHA - 1.0),
         };
         coded.copysign(linear)
     }
+
+    /// The linear value of a stored one, the inverse of [`Encoding::encode`]. IEC 61966-2-1 has its own rounded knee, 0.04045.
+    #[must_use]
+    pub fn decode(self, coded: f64) -> f64 {
+        let v = coded.abs();
+        let linear = match self {
+            Self::Linear => v,
+            Self::Srgb if v <= 0.040_45 => v / 12.92,
+            Self::Srgb => ((v + 0.055) / 1.055).powf(2.4),
+            Self::Rec2020 if v < 4.5 * BETA => v / 4.5,
+            Self::Rec2020 => ((v + (ALPHA - 1.0)) / ALPHA).powf(1.0 / 0.45),
+        };
+        linear.copysign(coded)
+    }
+}
+
+/// α and β of ITU-R BT.2020, exact.
+const ALPHA: f64 = 1.099_296_826_809_44;
+const BETA: f64 = 0.018_053_968_510_807;
+
+/// Chromaticities closer than this are those of one space: half a unit of the fourth decimal, as standards print them.
+const SAME_XY: f64 = 5e-5;
+
+/// Whether two chromaticities are the same to the four decimals of the standards.
+#[must_use]
+pub fn same_xy(a: [f64; 2], b: [f64; 2]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME_XY)
 }
 
 impl Space {
-    /// XYZ (Y = 1 for white) to linear RGB: the inverse of the matrix whose columns are the primaries scaled to add up to
-    /// white (SMPTE RP 177-1993). `None` for degenerate primaries.
+    /// The linear space of primaries and a white that a file states: one that has a name, or a nameless one. Four decimals count.
     #[must_use]
-    pub fn from_xyz(&self) -> Option<DMat3> {
+    pub fn of(primaries: [[f64; 2]; 3], white: [f64; 2]) -> Self {
+        let named = SPACES.into_iter().chain([RADIANCE]).find(|space| {
+            same_xy(space.white, white) && space.primaries.iter().zip(primaries).all(|(a, b)| same_xy(*a, b))
+        });
+        let nameless = Self {
+            key: "chromaticities",
+            name: "the file's RGB",
+            primaries,
+            white,
+            white_name: "the file's",
+            encoding: Encoding::Linear,
+        };
+        Self { encoding: Encoding::Linear, ..named.unwrap_or(nameless) }
+    }
+
+    /// Linear RGB to XYZ (Y = 1 for white): the matrix whose columns are the primaries scaled to add up to white (SMPTE RP
+    /// 177-1993). `None` for degenerate primaries.
+    #[must_use]
+    pub fn to_xyz(&self) -> Option<DMat3> {
         let [r, g, b] = self.primaries.map(|p| xyz_of_xy(p).map(DVec3::from));
         let white = DVec3::from(xyz_of_xy(self.white)?);
         let columns = DMat3::from_cols(r?, g?, b?);
         let scale = columns.inverse() * white;
-        let inverse = (columns * DMat3::from_diagonal(scale)).inverse();
-        inverse.is_finite().then_some(inverse)
+        let matrix = columns * DMat3::from_diagonal(scale);
+        (matrix.is_finite() && matrix.inverse().is_finite()).then_some(matrix)
+    }
+
+    /// XYZ (Y = 1 for white) to linear RGB: the inverse of [`Space::to_xyz`]. `None` for degenerate primaries.
+    #[must_use]
+    pub fn from_xyz(&self) -> Option<DMat3> {
+        self.to_xyz().map(|m| m.inverse())
     }
 }
 
@@ -192,6 +249,37 @@ mod tests {
             assert_eq!(encoding.encode(-0.5), -encoding.encode(0.5));
             assert!((encoding.encode(1.0) - 1.0).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn decoding_undoes_encoding_and_meets_the_standard() {
+        // IEC 61966-2-1: 0.04045 is 0.0031308 to five digits; the mid code 128/255 is 0.215861 (with its constants, by hand:
+        // ((0.501961 + 0.055)/1.055)^2.4).
+        assert!((Encoding::Srgb.decode(0.040_45) - 0.003_130_8).abs() < 5e-8);
+        assert!((Encoding::Srgb.decode(128.0 / 255.0) - 0.215_861).abs() < 5e-7);
+        for encoding in [Encoding::Srgb, Encoding::Rec2020, Encoding::Linear] {
+            for i in -200..=200 {
+                let v = f64::from(i) / 100.0;
+                // Between the two knees of IEC 61966-2-1 the branches differ by the rounding of its constants.
+                let bound = if encoding == Encoding::Srgb { 5e-8 } else { 1e-14 };
+                assert!((encoding.decode(encoding.encode(v)) - v).abs() < bound, "{encoding:?} {v}");
+            }
+        }
+    }
+
+    #[test]
+    fn radiance_weighs_its_primaries_as_its_source_does() {
+        // Radiance, src/common/color.h: CIE_rf, CIE_gf, CIE_bf of the default primaries, nine decimals.
+        let y = RADIANCE.to_xyz().expect("proper primaries").row(1);
+        for (got, want) in y.to_array().into_iter().zip([0.265_074_126, 0.670_114_631, 0.064_811_243]) {
+            assert!((got - want).abs() < 5.1e-10, "{got} {want}");
+        }
+        assert_eq!(
+            Space::of(RADIANCE.primaries, [0.333, 0.333]).key,
+            "chromaticities",
+            "three digits are another white"
+        );
+        assert_eq!(Space::of(SRGB.primaries.map(|p| p.map(|v| f64::from(v as f32))), SRGB.white).key, "srgb");
     }
 
     #[test]

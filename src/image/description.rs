@@ -109,7 +109,8 @@ pub struct Description {
     pub channels: Vec<Channel>,
     /// What the bands are of.
     pub content: Content,
-    /// The space of [`Meaning::Primary`] channels.
+    /// The space of [`Meaning::Primary`] channels; of an image of X, Y, Z or luminance without a unit only the luminance of 1
+    /// counts.
     pub rgb: Option<RgbSpace>,
     /// Everything else that is known, by name, in order: the file's own attributes, and the contract under which planes were
     /// integrated (names `photopic:…`).

@@ -12,7 +12,7 @@ pub enum ErrorKind {
     #[error("found an empty input; expected an image")]
     Empty,
     /// Not one of the formats.
-    #[error("found {found}; expected an OpenEXR, ENVI or NPY file, or a stack of pictures")]
+    #[error("found {found}; expected an OpenEXR, ENVI, NPY, Radiance, PNG, JPEG or TIFF file, or a stack of pictures")]
     UnknownFormat {
         /// What it looks like.
         found: String,

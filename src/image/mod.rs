@@ -1,11 +1,12 @@
-//! Spectral images: planes with named channels and units, streamed to photometry in bounded memory.
+//! Images, spectral and in colours: planes with named channels and units, streamed to photometry in bounded memory.
 //!
 //! - [`Description`]: what an image is, without its pixels: size, [`Channel`]s with units, what the bands are of, attributes.
 //! - [`Source`]: pixels by [`Region`]; never the whole image. Readers are sources, and so is everything that is done to an
 //!   image: [`Converted`] is one around another. A writer pulls rows from the last of them, and that is the whole pipeline.
 //! - [`Target`], [`Plan`]: luminance, XYZ, RGB and other weightings of the bands, under the integration contract of
 //!   [`crate::spectrum::integrate`].
-//! - [`format`](mod@format): spectral EXR, ENVI, band stacks, NPY; one folder or file per format.
+//! - [`tristimulus`]: the same from RGB, XYZ and luminance. [`Toned`]: tone mapping, the last step before a picture.
+//! - [`format`](mod@format): EXR, spectral and RGB; ENVI, band stacks, NPY; Radiance, PNG, JPEG, TIFF; one folder or file per format.
 //!
 //! # Order of samples
 //! Everywhere rows run from the top, and within a row the channels follow one another, each with its pixels from the left
@@ -24,6 +25,8 @@ pub mod plan;
 pub mod source;
 pub mod statistics;
 pub mod target;
+pub mod tone;
+pub mod tristimulus;
 
 pub use beside::Beside;
 pub use converted::Converted;
@@ -34,3 +37,4 @@ pub use plan::{Plan, PlanError, Settings};
 pub use source::{Region, Source};
 pub use statistics::Statistics;
 pub use target::Target;
+pub use tone::Toned;

@@ -29,9 +29,10 @@ pub struct Settings {
     pub unit: Option<SpectralUnit>,
     /// Light that falls on a reflectance image, by name, relative or not: only its shape counts.
     pub illuminant: Option<(String, Spectrum)>,
-    /// Luminance, cd/m²: of RGB (1, 1, 1) for light; of the perfect diffuser for reflectance.
+    /// Luminance, cd/m²: of RGB (1, 1, 1) for light, and of 1 in planes whose file does not state it; of the perfect diffuser for
+    /// reflectance.
     pub white_luminance: Option<f64>,
-    /// Adaptation of RGB from the illuminant of a reflectance image to the white of the space.
+    /// Adaptation of RGB from the illuminant of a reflectance image, or the white of another space, to the white of the space.
     pub adaptation: Transform,
 }
 
@@ -39,8 +40,10 @@ pub struct Settings {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// There is no spectrum in it.
-    #[error("the image has no spectral bands (its channels are {channels}); expected a spectral image")]
+    /// There is nothing in it that could be converted.
+    #[error(
+        "the image has neither spectral bands nor RGB, XYZ or luminance (its channels are {channels}); expected one of them"
+    )]
     NoBands {
         /// The channels there are.
         channels: String,
@@ -81,6 +84,31 @@ pub enum PlanError {
         /// The illuminant.
         name: String,
     },
+    /// Colours have lost the spectrum that the target needs.
+    #[error(
+        "the image holds {held}, from which {target} does not follow: lights of the same colour differ in it; expected a \
+         spectral image"
+    )]
+    NoSpectrum {
+        /// What the planes are.
+        held: String,
+        /// What was asked for.
+        target: String,
+    },
+    /// A setting that is about spectra, for an image that has none.
+    #[error("{setting} is about spectra, and the image holds {held}; expected a spectral image, or no such setting")]
+    AboutSpectra {
+        /// What was set.
+        setting: &'static str,
+        /// What the planes are.
+        held: String,
+    },
+    /// The user's white luminance for planes whose unit the file states.
+    #[error("the image is in {unit} already; expected a white luminance only for RGB, or for an image without units")]
+    WhiteStated {
+        /// The unit.
+        unit: String,
+    },
     /// Encoded values need a white.
     #[error(
         "encoded RGB of light needs the luminance that becomes white; expected --white-luminance (cd/m²), or linear RGB"
@@ -99,6 +127,8 @@ pub enum PlanError {
 pub struct Plan {
     /// The channels that are read: those with a weight.
     pub(super) channels: Vec<usize>,
+    /// The curve of the samples that are read.
+    pub(super) decoding: Encoding,
     pub(super) weights: Weights,
     pub(super) encoding: Encoding,
     /// The image that comes out.
@@ -149,6 +179,8 @@ impl Plan {
     ///
     /// Every figure of light is the one that [`crate::conversion`] gives for the pixel's spectrum under the same contract.
     ///
+    /// An image without bands that has RGB, XYZ or luminance is converted by its primaries: [`super::tristimulus`].
+    ///
     /// # Errors
     /// [`PlanError`].
     pub fn new(image: &Description, target: &Target, settings: &Settings) -> Result<Checked<Self>, PlanError> {
@@ -156,10 +188,7 @@ impl Plan {
         let stated = match (&image.content, bands.is_empty()) {
             (Content::Light { quantity, unit }, false) => Some((*quantity, unit.as_ref())),
             (Content::Reflectance, false) => None,
-            _ => {
-                let channels = image.channels.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
-                return Err(PlanError::NoBands { channels });
-            }
+            _ => return super::tristimulus::plan(image, target, settings),
         };
         let grid = image.grid().map_err(PlanError::Grid)?;
         let mut findings = Vec::new();
@@ -197,6 +226,7 @@ impl Plan {
         };
         let plan = Self {
             channels: used.iter().map(|i| bands[*i].0).collect(),
+            decoding: Encoding::Linear,
             weights: Weights::new(&columns),
             encoding,
             description: output(image, target, settings, quantity, &integrand)?,
@@ -234,7 +264,12 @@ impl Plan {
     /// Where `row` or `out` is too short.
     #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
     pub fn row(&self, row: &[f32], width: usize, out: &mut [f32]) {
-        self.weights.apply(row, width, out, width);
+        if self.decoding == Encoding::Linear {
+            self.weights.apply(row, width, out, width);
+        } else {
+            let linear: Vec<f32> = row.iter().map(|v| self.decoding.decode(f64::from(*v)) as f32).collect();
+            self.weights.apply(&linear, width, out, width);
+        }
         if self.encoding != Encoding::Linear {
             out.iter_mut().for_each(|v| *v = self.encoding.encode(f64::from(*v)) as f32);
         }
@@ -329,9 +364,31 @@ fn coverage(target: &Target, integrand: &Integrand) -> Option<Finding> {
     Some(Finding::info("I010", message))
 }
 
-/// Attributes that speak of the bands and mean nothing without them.
-const OF_BANDS: [&str; 4] =
-    ["spectralLayoutVersion", "emissiveUnits", "polarisationHandedness", "photopic:samples_unit"];
+/// Attributes that speak of the samples that were read, and not of those that come out.
+const OF_SAMPLES: [&str; 6] = [
+    "spectralLayoutVersion",
+    "emissiveUnits",
+    "polarisationHandedness",
+    "photopic:samples_unit",
+    "photopic:unit",
+    "photopic:white_luminance_cd_per_m2",
+];
+
+/// The image of other channels that a conversion to a target makes: with all attributes that still hold.
+pub(super) fn made_of(image: &Description, target: &Target, unit: &str) -> Description {
+    let meaning = |k: u8| match target {
+        Target::Luminance(_) => Meaning::Photopic,
+        Target::Xyz(_) => Meaning::Tristimulus(k),
+        Target::Rgb { .. } => Meaning::Primary(k),
+        Target::Scotopic | Target::AlphaOpic { .. } | Target::Weighting { .. } => Meaning::Weighted,
+    };
+    let channels = (0..).zip(target.channel_names()).map(|(k, name)| Channel::new(name, unit, meaning(k))).collect();
+    let mut out = Description::planes(image.width, image.height, channels);
+    out.attributes.extend(image.attributes.iter().filter(|(name, _)| !OF_SAMPLES.contains(&name.as_str())).cloned());
+    out.set_attribute("photopic:version", env!("CARGO_PKG_VERSION"));
+    out.set_attribute("photopic:target", target.to_string());
+    out
+}
 
 /// The image that comes out: channels with units, and the contract as attributes.
 fn output(
@@ -341,17 +398,7 @@ fn output(
     quantity: Option<Quantity>,
     integrand: &Integrand,
 ) -> Result<Description, PlanError> {
-    let unit = unit(target, settings, quantity);
-    let meaning = |k: u8| match target {
-        Target::Luminance(_) => Meaning::Photopic,
-        Target::Xyz(_) => Meaning::Tristimulus(k),
-        Target::Rgb { .. } => Meaning::Primary(k),
-        Target::Scotopic | Target::AlphaOpic { .. } | Target::Weighting { .. } => Meaning::Weighted,
-    };
-    let channels =
-        (0..).zip(target.channel_names()).map(|(k, name)| Channel::new(name, unit.clone(), meaning(k))).collect();
-    let mut out = Description::planes(image.width, image.height, channels);
-    out.attributes.extend(image.attributes.iter().filter(|(name, _)| !OF_BANDS.contains(&name.as_str())).cloned());
+    let mut out = made_of(image, target, &unit(target, settings, quantity));
     if let Target::Rgb { space, encoded } = target {
         let white = match quantity {
             Some(Quantity::Relative) => None,
@@ -364,8 +411,6 @@ fn output(
     let (first, last) = integrand.grid.range_nm();
     let (low, high) = contract.range_nm.unwrap_or((first, last));
     let mut set = |name: &str, value: String| out.set_attribute(&format!("photopic:{name}"), value);
-    set("version", env!("CARGO_PKG_VERSION").to_owned());
-    set("target", target.to_string());
     set("rule", contract.rule_on(&integrand.grid, integrand.sampling)?.word().to_owned());
     set("range_nm", format!("{}-{}", first.max(low), last.min(high)));
     if let Some(step) = integrand.grid.step_nm() {

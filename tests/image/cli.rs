@@ -148,3 +148,46 @@ fn a_weighting_of_ones_over_its_range_is_the_radiance() {
     // 6 W/(m²·sr·nm) in one sample of 5 nm.
     assert_eq!(info(folder.path(), "w.npy")["results"][0]["channels"][0]["max"], 30.0);
 }
+
+#[test]
+fn pictures_in_colours_go_in_and_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    cube(folder.path());
+    let run = |args: &[&str]| photopic().current_dir(&folder).args(["image", "convert"]).args(args).assert();
+    let number = |image: &str, channel: usize, key: &str| {
+        info(folder.path(), image)["results"][0]["channels"][channel][key].as_f64().expect("a number")
+    };
+    // Light to Radiance and back is its luminance: 6 · 683.002 · 5 cd/m², within the half unit of an 8-bit mantissa.
+    run(&["cube.hdr", "-o", "cube.pic", "--to", "luminance"]).success();
+    run(&["cube.pic", "-o", "back.exr"]).success();
+    let want = 6.0 * 683.002 * 5.0;
+    assert!((number("back.exr", 0, "max") / want - 1.0).abs() < 1.0 / 256.0);
+    assert_eq!(info(folder.path(), "back.exr")["results"][0]["channels"][0]["unit"], "cd/m²");
+    // XYZ through its own format.
+    run(&["cube.hdr", "-o", "xyz.hdr", "--format", "radiance", "--to", "xyz"]).success();
+    assert!((number("xyz.hdr", 1, "max") / want - 1.0).abs() < 1.0 / 128.0);
+    // A picture needs a white, and then is one.
+    image::RgbImage::from_pixel(2, 2, image::Rgb([128, 128, 128])).save(folder.path().join("grey.png")).expect("saved");
+    run(&["grey.png", "-o", "y.npy", "--white-luminance", "100"]).success();
+    assert!((number("y.npy", 0, "mean") - 21.5861).abs() < 5e-5, "IEC 61966-2-1");
+    run(&["grey.png", "-o", "again.png"]).success();
+    let picture = image::open(folder.path().join("again.png")).expect("a PNG").into_rgb8();
+    assert!(picture.pixels().all(|p| p.0 == [128; 3]));
+    run(&["cube.hdr", "-o", "view.png", "--tone", "reinhard"]).success();
+    let out = run(&["cube.hdr", "-o", "cut.png", "--white-luminance", "100"]).success();
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("I121"));
+    for (args, want) in [
+        (vec!["grey.png", "-o", "y.exr", "--to", "melanopic"], "from which melanopic does not follow"),
+        (vec!["grey.png", "-o", "y.exr", "--illuminant", "D65"], "takes no illuminant"),
+        (vec!["grey.png", "-o", "y.png", "--to", "luminance"], "expected encoded RGB for a PNG picture"),
+        (vec!["cube.hdr", "-o", "y.exr", "--tone", "filmic"], "--tone: found luminance (cie-1924-v), a measurement"),
+        (vec!["cube.hdr", "-o", "y.png", "--tone", "linear"], "expected --white-luminance"),
+        (vec!["cube.hdr", "-o", "y.png", "--exposure-ev", "2"], "--tone"),
+        (vec!["cube.pic", "-o", "y.exr", "--white-luminance", "9"], "is in cd/m² already"),
+    ] {
+        let out = run(&args).code(2);
+        let stderr = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+        assert!(stderr.contains(want), "{args:?}: {stderr}");
+        assert!(!folder.path().join(args[2]).exists(), "{args:?}");
+    }
+}

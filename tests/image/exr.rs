@@ -131,7 +131,7 @@ fn half_floats_never_become_infinite() {
     assert_eq!(findings.iter().map(|f| f.code).collect::<Vec<_>>(), ["I020", "I021"]);
     let (again, _) = load(out.get_ref());
     assert_eq!(again.samples(), [65504.0, 1.5, 0.0]);
-    assert_eq!(again.description().channels[0].unit, "cd/m2");
+    assert_eq!(again.description().channels[0].unit, "cd/m²");
     let mut out = Cursor::new(Vec::new());
     assert!(ours::write(&mut out, &mut image, Depth::Float).expect("writes").is_empty());
     assert_eq!(load(out.get_ref()).0.samples(), [2e9, 1.5, 1e-9]);

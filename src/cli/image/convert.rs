@@ -12,13 +12,15 @@ use crate::cli::notes::Notes;
 use crate::cli::{Failure, Talk};
 use crate::colorimetry::Observer;
 use crate::colorimetry::adaptation::Transform;
-use crate::colorimetry::rgb::{ACESCG, DISPLAY_P3, REC2020, SRGB, Space};
+use crate::colorimetry::rgb::{ACESCG, DISPLAY_P3, RADIANCE, REC2020, SRGB, Space};
 use crate::constants::{K_M, K_M_SCOTOPIC, SecondRadiation};
 use crate::finding::Location;
 use crate::illuminant::named;
 use crate::image::format::envi::Interleave;
 use crate::image::format::exr::Depth;
-use crate::image::{Beside, Content, Converted, Plan, PlanError, Settings, Source, Target};
+use crate::image::format::picture::Bits;
+use crate::image::tone::{self, Operator};
+use crate::image::{Beside, Content, Converted, Plan, PlanError, Settings, Source, Target, Toned};
 use crate::photometry::luminous::{Efficacy, Efficiency};
 use crate::spectrum::format::{ReadOptions, read};
 use crate::spectrum::integrate::{Contract, Weighting};
@@ -32,17 +34,24 @@ Examples:
   photopic image convert render.exr -o xyz.exr --to xyz --observer cie-1964-10deg
   photopic image convert leaf.hdr -o leaf.exr --to srgb --illuminant D65
   photopic image convert cube.hdr -o cube.exr --to cube       (another format, with RGB beside the spectra)
+  photopic image convert scene.hdr -o xyz.exr --to xyz        (a Radiance picture: 179 cd/m2 per unit)
+  photopic image convert photo.png -o y.exr --white-luminance 250
+  photopic image convert render.exr -o render.pic             (Radiance RGB, absolute)
+  photopic image convert render.exr -o view.png --tone reinhard --key 0.18
   photopic image convert 4*nm.tif 5*nm.tif 6*nm.tif -o y.exr --dark 64 --gain 1.5e-5 --unit W/m2/sr/nm")]
 pub(in crate::cli) struct ConvertArgs {
-    /// An image (spectral EXR, ENVI header or data, NPY), a folder or a list of grey pictures, or `-` for standard input.
+    /// An image (spectral, RGB or luminance EXR, ENVI header or data, NPY, Radiance, PNG, JPEG, TIFF), a folder or a list of grey
+    /// pictures, or `-` for standard input.
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<String>,
-    /// The file to write; its ending says the format: .exr, .hdr (ENVI), .npy. `-` with --format is standard output.
+    /// The file to write; its ending says the format: .exr, .hdr (ENVI; Radiance with --format radiance), .npy, .pic (Radiance), .png.
+    /// `-` with --format is standard output.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// What to make of the bands.
-    #[arg(long, value_enum, value_name = "PLANES", default_value = "luminance", conflicts_with = "weighting")]
-    to: To,
+    /// What to make of the bands, or of RGB, XYZ and luminance; by default luminance, for Radiance pictures its linear RGB, for
+    /// PNG encoded sRGB.
+    #[arg(long, value_enum, value_name = "PLANES", conflicts_with = "weighting")]
+    to: Option<To>,
     /// A weighting of your own: a CSV file of wavelength (nm) and value; the result is the integral of both.
     #[arg(long, value_name = "FILE")]
     weighting: Option<String>,
@@ -51,7 +60,34 @@ pub(in crate::cli) struct ConvertArgs {
     #[command(flatten)]
     meaning: MeaningArgs,
     #[command(flatten)]
+    tone: ToneArgs,
+    #[command(flatten)]
     writing: Writing,
+}
+
+/// What is done so that a picture can be looked at.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Tone mapping (encoded RGB only, the last step)")]
+struct ToneArgs {
+    /// Operator.
+    #[arg(long, value_enum)]
+    tone: Option<ToneArg>,
+    /// Exposure in stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, requires = "tone")]
+    exposure_ev: f64,
+    /// What the log-average luminance is shown as: 0.18 by default with reinhard and filmic; linear leaves white where it is.
+    #[arg(long, value_name = "KEY", value_parser = positive, requires = "tone")]
+    key: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ToneArg {
+    /// Exposure alone; what is brighter than white is cut.
+    Linear,
+    /// Reinhard et al., SIGGRAPH 2002, global.
+    Reinhard,
+    /// Hable's curve, GDC 2010.
+    Filmic,
 }
 
 /// What the samples are, and how they are weighted.
@@ -74,10 +110,12 @@ struct MeaningArgs {
     /// cie-2008-v-10deg.
     #[arg(long, value_name = "NAME", default_value_t)]
     efficiency: Efficiency,
-    /// Luminance (cd/m2) of RGB (1, 1, 1); for reflectance, of the perfect diffuser.
+    /// Luminance (cd/m2) of RGB (1, 1, 1): of the output, and of an input that does not state its own; for reflectance, of the
+    /// perfect diffuser.
     #[arg(long, value_name = "CD_PER_M2", value_parser = positive)]
     white_luminance: Option<f64>,
-    /// Chromatic adaptation of RGB from the illuminant of a reflectance image: bradford, cat16, none.
+    /// Chromatic adaptation of RGB from the illuminant of a reflectance image, or from the white of another RGB space: bradford,
+    /// cat16, none.
     #[arg(long, default_value = "bradford")]
     adaptation: Transform,
     /// Rule; by default CIE 15 summation on equal steps up to 5 nm, else the exact integral of straight lines.
@@ -107,6 +145,9 @@ struct Writing {
     /// ENVI: order of the numbers.
     #[arg(long, value_enum, default_value = "bil")]
     interleave: InterleaveArg,
+    /// PNG: 16 bits per sample instead of 8.
+    #[arg(long)]
+    sixteen_bit: bool,
     /// EXR with --to cube: without R, G, B beside the spectral channels.
     #[arg(long)]
     no_rgb: bool,
@@ -131,7 +172,7 @@ enum To {
     Scotopic,
     /// Tristimulus values.
     Xyz,
-    /// Linear sRGB; (1, 1, 1) is --white-luminance, 1 cd/m2 by default.
+    /// Linear sRGB; (1, 1, 1) is --white-luminance; by default that of an RGB image, and 1 cd/m2 of others.
     Srgb,
     /// Encoded sRGB.
     SrgbEncoded,
@@ -145,6 +186,8 @@ enum To {
     Rec2020Encoded,
     /// ACEScg, linear.
     Acescg,
+    /// Radiance's linear RGB with the equal-energy white.
+    Radiance,
     /// CIE S 026, S-cone-opic, W/m2/sr.
     SConeOpic,
     /// M-cone-opic.
@@ -176,6 +219,7 @@ impl To {
             Self::Rec2020 => rgb(REC2020, false),
             Self::Rec2020Encoded => rgb(REC2020, true),
             Self::Acescg => rgb(ACESCG, false),
+            Self::Radiance => rgb(RADIANCE, false),
             Self::SConeOpic => opic(0, false),
             Self::MConeOpic => opic(1, false),
             Self::LConeOpic => opic(2, false),
@@ -221,8 +265,15 @@ impl ConvertArgs {
         })
     }
 
-    fn target(&self) -> Result<Option<Target>, Failure> {
-        let Some(path) = &self.weighting else { return Ok(self.to.target(&self.meaning)) };
+    fn target(&self, format: Format) -> Result<Option<Target>, Failure> {
+        let Some(path) = &self.weighting else {
+            let usual = match format {
+                Format::Radiance => To::Radiance,
+                Format::Png => To::SrgbEncoded,
+                Format::Exr | Format::Envi | Format::Npy => To::Luminance,
+            };
+            return Ok(self.to.unwrap_or(usual).target(&self.meaning));
+        };
         let spectrum = spectrum(path)?;
         if spectrum.values().len() < 2 {
             return Err(Failure::Message(format!("{path}: found one value; expected a weighting of at least two")));
@@ -243,8 +294,10 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
             InterleaveArg::Bil => Interleave::Bil,
             InterleaveArg::Bip => Interleave::Bip,
         },
+        bits: if arguments.writing.sixteen_bit { Bits::Sixteen } else { Bits::Eight },
     };
-    let (settings, target) = (arguments.settings()?, arguments.target()?);
+    let (settings, target) = (arguments.settings()?, arguments.target(options.format)?);
+    let tone = arguments.tone.settings(target.as_ref())?;
     let opened = open(&arguments.images, &arguments.reading)?;
     notes.print(&opened.findings);
     let path = opened.path;
@@ -252,10 +305,27 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
     let source = Watched { source: opened.source, progress: notes.progress.clone() };
     let mut source: Box<dyn Source> = match target {
         Some(target) => {
-            let plan = Plan::new(source.description(), &target, &settings).map_err(refused)?;
+            if tone.is_some_and(|tone| tone.key.is_none()) {
+                // Without a key white stays white, so that somebody has to say what white is.
+                Plan::new(source.description(), &target, &settings).map_err(refused)?;
+            }
+            let linear = tone.and_then(|_| without_curve(&target));
+            let plan =
+                Plan::new(source.description(), linear.as_ref().unwrap_or(&target), &settings).map_err(refused)?;
             let place = Location::default().in_file(&path);
             notes.print(&plan.findings.into_iter().map(|f| f.at(place.clone())).collect::<Vec<_>>());
-            Box::new(Converted::new(source, plan.value))
+            let converted = Converted::new(source, plan.value);
+            match tone {
+                Some(tone) => {
+                    let toned = Toned::new(converted, tone);
+                    Box::new(toned.map_err(|e| Failure::Message(e.in_file(&path).to_string()))?)
+                }
+                None => Box::new(converted),
+            }
+        }
+        None if source.description().bands().is_empty() && settings.white_luminance.is_some() => {
+            let message = "--to cube leaves samples as they are; expected no --white-luminance, or --to srgb or xyz";
+            return Err(Failure::Message(format!("{path}: {message}")));
         }
         None => cube(source, arguments, &settings, options.format).map_err(refused)?,
     };
@@ -263,6 +333,42 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
     notes.progress.finish_and_clear();
     notes.print(&findings);
     Ok(())
+}
+
+impl ToneArgs {
+    /// What is asked for; refused for anything but encoded RGB.
+    fn settings(&self, target: Option<&Target>) -> Result<Option<tone::Settings>, Failure> {
+        let Some(tone) = self.tone else { return Ok(None) };
+        if !matches!(target, Some(Target::Rgb { encoded: true, .. })) {
+            let target = target.map_or("a cube".to_owned(), Target::to_string);
+            let message = format!(
+                "--tone: found {target}, a measurement; tone mapping is for pictures to look at: expected --to srgb-encoded, \
+                 display-p3-encoded or rec2020-encoded"
+            );
+            return Err(Failure::Message(message));
+        }
+        let operator = match tone {
+            ToneArg::Linear => Operator::Linear,
+            ToneArg::Reinhard => Operator::Reinhard,
+            ToneArg::Filmic => Operator::Filmic,
+        };
+        if !self.exposure_ev.is_finite() {
+            return Err(Failure::Message("--exposure-ev: expected a finite number of stops".to_owned()));
+        }
+        let usual = if operator == Operator::Linear { None } else { Some(USUAL_KEY) };
+        Ok(Some(tone::Settings { operator, exposure_ev: self.exposure_ev, key: self.key.or(usual) }))
+    }
+}
+
+/// Middle grey, as in Reinhard et al. 2002.
+const USUAL_KEY: f64 = 0.18;
+
+/// The linear target before a tone curve.
+fn without_curve(target: &Target) -> Option<Target> {
+    match target {
+        Target::Rgb { space, .. } => Some(Target::Rgb { space: *space, encoded: false }),
+        _ => None,
+    }
 }
 
 /// Every channel as it is; in an EXR with linear sRGB beside the spectra, so that any viewer shows something.

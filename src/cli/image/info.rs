@@ -21,9 +21,10 @@ use crate::report::image as report;
 Examples:
   photopic image info cube.hdr
   photopic image info render.exr --json
+  photopic image info scene.pic
   photopic image info stack/ --wavelengths bands.csv")]
 pub(in crate::cli) struct InfoArgs {
-    /// Images: spectral EXR, ENVI (header or data), NPY, folders of grey pictures, `-` for standard input.
+    /// Images: EXR, ENVI (header or data), NPY, Radiance, PNG, JPEG, TIFF, folders of grey pictures, `-` for standard input.
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<String>,
     #[command(flatten)]

@@ -14,7 +14,7 @@ use super::{Failure, Talk};
 pub(super) enum ImageCommand {
     /// Size, bands, units, range, odd values and histogram.
     Info(info::InfoArgs),
-    /// Luminance, XYZ, RGB and other planes of a spectral image, or the image in another format.
+    /// Luminance, XYZ, RGB and other planes of an image, spectral or in colours, or the image in another format.
     Convert(Box<convert::ConvertArgs>),
 }
 

@@ -12,7 +12,7 @@ use crate::cli::Failure;
 use crate::finding::{Checked, Finding};
 use crate::image::error::{Error, ErrorKind};
 use crate::image::format::stack::{self, Band};
-use crate::image::format::{envi, exr, npy};
+use crate::image::format::{envi, exr, npy, picture, radiance};
 use crate::image::{Description, Region, Source};
 use crate::report::envelope::Input;
 use crate::spectrum::WavelengthUnit;
@@ -36,6 +36,9 @@ pub(super) struct Reading {
     /// The samples are reflectances (0 to 1), where the file does not say so.
     #[arg(long)]
     pub reflectance: bool,
+    /// PNG, JPEG, TIFF: integers are linear, without the sRGB curve.
+    #[arg(long)]
+    pub linear: bool,
     /// Stacks: what a stored number less the dark one is multiplied by.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     pub gain: f64,
@@ -157,6 +160,8 @@ pub(super) fn open(paths: &[String], reading: &Reading) -> Result<Opened, Failur
             io::copy(&mut io::stdin().lock(), &mut spool)?;
             one(path, spool, reading)
         }
+        // One picture is a stack of one band where somebody says its wavelength.
+        [path] if path != "-" && reading.wavelengths.is_some() && is_picture(path) => pictures_of(path, paths, reading),
         [path] => one(path, File::open(path).map_err(|e| cannot(path, &e))?, reading),
         _ => pictures_of("the stack", paths, reading),
     }
@@ -180,6 +185,11 @@ fn one(path: &str, mut file: File, reading: &Reading) -> Result<Opened, Failure>
             };
             Ok(Opened::new(path, files, npy::open(file, wavelengths, options).map_err(refused(path))?))
         }
+        [b'#', b'?', ..] => Ok(Opened::new(path, files, radiance::open(file).map_err(refused(path))?)),
+        start if picture::is_picture(start) => {
+            let options = picture::Options { linear: reading.linear };
+            Ok(Opened::new(path, files, picture::open(file, options).map_err(refused(path))?))
+        }
         [b'E', b'N', b'V', b'I', ..] => {
             let data = data_of(Path::new(path))?;
             pair(path, &data.to_string_lossy(), path, options)
@@ -187,7 +197,7 @@ fn one(path: &str, mut file: File, reading: &Reading) -> Result<Opened, Failure>
         _ => match header_of(Path::new(path)) {
             Some(header) => pair(&header.to_string_lossy(), path, path, options),
             None => {
-                let found = "neither an OpenEXR, an NPY nor an ENVI file (no .hdr beside it)".to_owned();
+                let found = "neither an OpenEXR, an NPY, a Radiance nor an ENVI file (no .hdr beside it), nor a PNG, JPEG or TIFF".to_owned();
                 Err(refused(path)(ErrorKind::UnknownFormat { found }.into()))
             }
         },
@@ -228,6 +238,11 @@ fn header_of(data: &Path) -> Option<PathBuf> {
         let mut start = [0; 4];
         File::open(p).and_then(|mut f| f.read_exact(&mut start)).is_ok() && start == *b"ENVI"
     })
+}
+
+fn is_picture(path: &str) -> bool {
+    let mut start = [0; 4];
+    File::open(path).and_then(|mut f| f.read_exact(&mut start)).is_ok() && picture::is_picture(&start)
 }
 
 /// The pictures in a folder, by name.

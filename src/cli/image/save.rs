@@ -9,9 +9,10 @@ use crate::cli::Failure;
 use crate::cli::output::Whole;
 use crate::finding::Finding;
 use crate::image::Source;
-use crate::image::error::Error;
+use crate::image::error::{Error, ErrorKind};
 use crate::image::format::envi::{self, Interleave, WriteOptions};
-use crate::image::format::{exr, npy};
+use crate::image::format::picture::{self, Bits};
+use crate::image::format::{exr, npy, radiance};
 
 /// A format to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -22,6 +23,10 @@ pub(super) enum Format {
     Envi,
     /// NumPy array (.npy).
     Npy,
+    /// Radiance picture of RGB, XYZ or luminance (.pic; .hdr with this option).
+    Radiance,
+    /// PNG picture of encoded RGB (.png).
+    Png,
 }
 
 /// How it is written.
@@ -30,6 +35,7 @@ pub(super) struct Options {
     pub format: Format,
     pub depth: exr::Depth,
     pub interleave: Interleave,
+    pub bits: Bits,
 }
 
 /// The format of a name.
@@ -40,9 +46,13 @@ pub(super) fn format_of(path: &Path, asked: Option<Format>) -> Result<Format, Fa
         (None, Some("exr")) => Ok(Format::Exr),
         (None, Some("hdr")) => Ok(Format::Envi),
         (None, Some("npy")) => Ok(Format::Npy),
+        (None, Some("pic")) => Ok(Format::Radiance),
+        (None, Some("png")) => Ok(Format::Png),
         (None, _) => {
             let path = path.display();
-            Err(Failure::Message(format!("{path}: expected a name ending in .exr, .hdr (ENVI) or .npy, or --format")))
+            Err(Failure::Message(format!(
+                "{path}: expected a name ending in .exr, .hdr (ENVI), .npy, .pic (Radiance) or .png, or --format"
+            )))
         }
     }
 }
@@ -58,7 +68,13 @@ pub(super) fn save(
     let failed = |error: Error| {
         Failure::Message(match &error.location().path {
             Some(_) => error.to_string(),
-            None => format!("{}: cannot be written: {error}; expected room on the disk", path.display()),
+            // Only the system's word may come from a full disk.
+            None => match error.kind() {
+                ErrorKind::Io { .. } => {
+                    format!("{}: cannot be written: {error}; expected room on the disk", path.display())
+                }
+                _ => format!("{}: cannot be written: {error}", path.display()),
+            },
         })
     };
     let mut whole = Whole::open(path, inputs)?;
@@ -68,6 +84,8 @@ pub(super) fn save(
             exr::write(out, source, options.depth).map_err(failed)?
         }
         Format::Npy => npy::write(whole.file(), source).map_err(failed)?,
+        Format::Radiance => radiance::write(BufWriter::new(whole.file()), source).map_err(failed)?,
+        Format::Png => picture::write_png(BufWriter::new(whole.file()), source, options.bits).map_err(failed)?,
         Format::Envi => {
             if path == Path::new("-") {
                 let message = "an ENVI image is two files; expected a name for them instead of `-`";

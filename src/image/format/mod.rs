@@ -3,4 +3,6 @@
 pub mod envi;
 pub mod exr;
 pub mod npy;
+pub mod picture;
+pub mod radiance;
 pub mod stack;

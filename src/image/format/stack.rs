@@ -10,14 +10,12 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 
 use super::envi::{DataType, Envi, Header, Options, open_numbers};
 use super::exr;
+use super::picture::{MOST_PIXELS, damaged};
 use crate::finding::{Checked, Location};
 use crate::image::error::{Error, ErrorKind};
 use crate::image::memory::Memory;
 use crate::image::source::Source;
 use crate::spectrum::WavelengthUnit;
-
-/// The largest picture that is read, in pixels.
-const MOST_PIXELS: usize = 1 << 28;
 
 /// One band of a stack.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,11 +153,6 @@ fn grey(bytes: Vec<u8>) -> Result<Picture, Error> {
 fn not_grey(found: String) -> Error {
     let error = Error::from(ErrorKind::Unsupported { found, expected: "a grey picture of one channel".to_owned() });
     error.with_hint("save one channel per wavelength")
-}
-
-fn damaged(what: &str, error: &dyn std::fmt::Display) -> Error {
-    let found = format!("a damaged {what} ({error})");
-    ErrorKind::Unexpected { found, expected: "a whole one".to_owned() }.into()
 }
 
 fn png(bytes: &[u8]) -> Result<Picture, Error> {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::image::statistics::ChannelStatistics;
-use crate::image::{Content, Description, Meaning, Statistics};
+use crate::image::{Content, Description, Meaning, RgbSpace, Statistics};
 use crate::units::significant;
 
 /// Rows of the histogram in text.
@@ -37,6 +37,9 @@ pub fn info(image: &Description, statistics: &Statistics) -> Map<String, Value> 
         if let Some(step) = grid.step_nm() {
             set("step_nm", step.into());
         }
+    }
+    if let Some(rgb) = &image.rgb {
+        set("rgb", space(rgb, image.find(Meaning::Primary(0)).is_some()));
     }
     let channels = image.channels.iter().zip(&statistics.channels).map(|(channel, s)| {
         let mut out = Map::new();
@@ -72,6 +75,21 @@ pub fn info(image: &Description, statistics: &Statistics) -> Map<String, Value> 
     let attributes = image.attributes.iter().map(|(name, value)| (name.clone(), value.clone().into()));
     set("attributes", Value::from(attributes.collect::<Map<_, _>>()));
     out
+}
+
+/// The space of R, G, B; of other planes only the luminance of 1 means something.
+fn space(rgb: &RgbSpace, primaries: bool) -> Value {
+    let mut out = Map::new();
+    if primaries {
+        out.insert("space".to_owned(), rgb.space.key.into());
+        out.insert("encoded".to_owned(), rgb.encoded.into());
+        out.insert("primaries_xy".to_owned(), json!(rgb.space.primaries));
+        out.insert("white_xy".to_owned(), json!(rgb.space.white));
+    }
+    if let Some(luminance) = rgb.white_luminance {
+        out.insert("white_luminance_cd_per_m2".to_owned(), luminance.into());
+    }
+    out.into()
 }
 
 fn content(image: &Description) -> &'static str {
@@ -110,6 +128,17 @@ pub fn info_text(path: &str, image: &Description, statistics: &Statistics) -> St
         let (low, high) = grid.range_nm();
         let step = grid.step_nm().map_or("unequal steps".to_owned(), |s| format!("steps of {} nm", significant(s, 4)));
         line(format!("  {} bands from {low} to {high} nm, {step}", grid.len()));
+    }
+    if let Some(rgb) = &image.rgb {
+        let white =
+            rgb.white_luminance.map_or("of unknown luminance".to_owned(), |w| format!("{} cd/m²", significant(w, 6)));
+        let kind = if rgb.encoded { "encoded" } else { "linear" };
+        line(match image.find(Meaning::Primary(0)) {
+            Some(_) => {
+                format!("  RGB: {kind} {}, white {}, (1, 1, 1) is {white}", rgb.space.name, rgb.space.white_name)
+            }
+            None => format!("  1 is {white}"),
+        });
     }
     let width = image.channels.iter().map(|c| c.name.chars().count()).max().unwrap_or(0).max(7);
     line(format!("  {:width$} {:>12} {:>12} {:>12}", "channel", "min", "mean", "max"));

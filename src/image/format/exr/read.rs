@@ -4,6 +4,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::Chunk;
+use ::exr::math::Vec2;
 use ::exr::meta::attribute::{AttributeValue, SampleType};
 use ::exr::meta::header::Header;
 use ::exr::meta::{BlockDescription, MetaData};
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 
 use super::name::{Name, parse_name};
 use super::refused;
-use crate::colorimetry::rgb::{Encoding, SRGB, Space};
+use crate::colorimetry::rgb::{Encoding, SPACES, SRGB, Space};
 use crate::finding::{Checked, Finding};
 use crate::image::description::{Channel, Content, Description, Meaning, RgbSpace};
 use crate::image::error::{Error, ErrorKind};
@@ -74,7 +75,8 @@ fn parts<R: Read + Seek>(input: &mut BufReader<R>, meta: &MetaData, length: u64)
     let mut parts = Vec::new();
     for header in &meta.headers {
         if header.deep || header.channels.list.iter().any(|c| c.sampling.0 != 1 || c.sampling.1 != 1) {
-            let found = if header.deep { "a deep image" } else { "subsampled channels" }.to_owned();
+            let found = if header.deep { "a deep image" } else { "subsampled channels (luminance-chroma: Y, RY, BY)" };
+            let found = found.to_owned();
             return Err(
                 ErrorKind::Unsupported { found, expected: "a flat image with a sample per pixel".to_owned() }.into()
             );
@@ -226,11 +228,19 @@ fn describe(meta: &MetaData, findings: &mut Vec<Finding>) -> Result<(Description
         let found = description.attribute("spectralLayoutVersion").map_or("no".to_owned(), |v| format!("`{v}` as"));
         findings.push(Finding::info("I005", format!("{found} spectralLayoutVersion; read as 1.0")));
     }
-    if let Some(unit) = description.attribute("photopic:unit").map(str::to_owned) {
+    // The writer spells out what is not Latin text.
+    if let Some(unit) = description.attribute("photopic:unit").map(|unit| unit.replace("m2", "m²")) {
         let plain = |m: Meaning| matches!(m, Meaning::Photopic | Meaning::Weighted | Meaning::Tristimulus(_));
         description.channels.iter_mut().filter(|c| plain(c.meaning)).for_each(|c| c.unit.clone_from(&unit));
     }
-    description.rgb = description.find(Meaning::Primary(0)).map(|_| rgb_space(meta, first));
+    let colour = |c: &Channel| matches!(c.meaning, Meaning::Primary(_) | Meaning::Tristimulus(_) | Meaning::Photopic);
+    let rgb = description.channels.iter().any(colour).then(|| rgb_space(meta, first, &description));
+    let primaries = description.find(Meaning::Primary(0)).is_some();
+    description.rgb = rgb.filter(|rgb| primaries || rgb.white_luminance.is_some());
+    if primaries && meta.headers[first].shared_attributes.chromaticities.is_none() {
+        let message = "no chromaticities stated; those of Rec. ITU-R BT.709 taken, as OpenEXR has it";
+        findings.push(Finding::info("I102", message));
+    }
     if let Err(error) = if light || reflectance { description.grid() } else { return Ok((description, places)) } {
         return Err(ErrorKind::from(error).into());
     }
@@ -276,27 +286,20 @@ fn unit(description: &Description, findings: &mut Vec<Finding>) -> Option<Spectr
     }
 }
 
-fn rgb_space(meta: &MetaData, first: usize) -> RgbSpace {
-    let space = match meta.headers[first].shared_attributes.chromaticities {
-        Some(c) => {
-            let [red, green, blue, white] = [c.red, c.green, c.blue, c.white].map(|v| [f64::from(v.0), f64::from(v.1)]);
-            Space {
-                key: "chromaticities",
-                name: "the file's chromaticities",
-                primaries: [red, green, blue],
-                white,
-                white_name: "the file's",
-                encoding: Encoding::Linear,
-            }
-        }
-        // What OpenEXR prescribes where nothing is stated: Rec. ITU-R BT.709 with D65.
-        None => Space { encoding: Encoding::Linear, ..SRGB },
-    };
-    RgbSpace {
-        space,
-        encoded: false,
-        white_luminance: meta.headers[first].own_attributes.white_luminance.map(f64::from),
+/// The space of R, G, B; of X, Y, Z and luminance alone only the luminance of 1 counts.
+fn rgb_space(meta: &MetaData, first: usize, description: &Description) -> RgbSpace {
+    // What OpenEXR prescribes where nothing is stated: Rec. ITU-R BT.709 with D65.
+    let mut space = Space { encoding: Encoding::Linear, ..SRGB };
+    if let Some(c) = meta.headers[first].shared_attributes.chromaticities {
+        let pair = |v: Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
+        space = Space::of([c.red, c.green, c.blue].map(pair), pair(c.white));
     }
+    // OpenEXR is linear, but for what was written as encoded here.
+    let encoded = description.attribute("photopic:target").and_then(|t| t.strip_prefix("encoded "));
+    let curve = SPACES.into_iter().find(|s| Some(s.name) == encoded).map(|s| s.encoding);
+    let white_luminance = meta.headers[first].own_attributes.white_luminance.map(f64::from).filter(|w| *w > 0.0);
+    space.encoding = curve.unwrap_or(Encoding::Linear);
+    RgbSpace { space, encoded: curve.is_some(), white_luminance }
 }
 
 /// The attributes that are text or a number, by name.
