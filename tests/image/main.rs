@@ -9,5 +9,6 @@ mod envi;
 mod exr;
 mod kernel;
 mod npy;
+mod probe;
 mod stack;
 mod streaming;

@@ -57,7 +57,7 @@ pub(in crate::cli) struct ConvertArgs {
 /// What the samples are, and how they are weighted.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Photometry and colour")]
-struct MeaningArgs {
+pub(super) struct MeaningArgs {
     /// What the samples are of, where the file does not say: radiance, irradiance, exitance, …, relative.
     #[arg(long, value_name = "QUANTITY")]
     quantity: Option<Quantity>,
@@ -69,11 +69,11 @@ struct MeaningArgs {
     illuminant: Option<String>,
     /// Observer of --to xyz: cie-1931-2deg, cie-1964-10deg, cie-2015-2deg, cie-2015-10deg.
     #[arg(long, value_name = "NAME", default_value_t)]
-    observer: Observer,
+    pub observer: Observer,
     /// Luminous efficiency function of --to luminance: cie-1924-v, judd-1951-v, judd-vos-1978-v, cie-1964-v10, cie-2008-v-2deg,
     /// cie-2008-v-10deg.
     #[arg(long, value_name = "NAME", default_value_t)]
-    efficiency: Efficiency,
+    pub efficiency: Efficiency,
     /// Luminance (cd/m2) of RGB (1, 1, 1); for reflectance, of the perfect diffuser.
     #[arg(long, value_name = "CD_PER_M2", value_parser = positive)]
     white_luminance: Option<f64>,
@@ -197,10 +197,10 @@ fn spectrum(path: &str) -> Result<Spectrum, Failure> {
     }
 }
 
-impl ConvertArgs {
+impl MeaningArgs {
     /// The settings of a plan.
-    fn settings(&self) -> Result<Settings, Failure> {
-        let m = &self.meaning;
+    pub(super) fn settings(&self) -> Result<Settings, Failure> {
+        let m = self;
         let light = |name: &String| {
             let spectrum = if named::is_name(name) {
                 let source = named::source(name, SecondRadiation::default());
@@ -220,7 +220,9 @@ impl ConvertArgs {
             adaptation: m.adaptation,
         })
     }
+}
 
+impl ConvertArgs {
     fn target(&self) -> Result<Option<Target>, Failure> {
         let Some(path) = &self.weighting else { return Ok(self.to.target(&self.meaning)) };
         let spectrum = spectrum(path)?;
@@ -244,7 +246,7 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
             InterleaveArg::Bip => Interleave::Bip,
         },
     };
-    let (settings, target) = (arguments.settings()?, arguments.target()?);
+    let (settings, target) = (arguments.meaning.settings()?, arguments.target()?);
     let opened = open(&arguments.images, &arguments.reading)?;
     notes.print(&opened.findings);
     let path = opened.path;
