@@ -7,6 +7,7 @@ mod agreement;
 mod cli;
 mod envi;
 mod exr;
+mod falsecolor;
 mod kernel;
 mod npy;
 mod probe;

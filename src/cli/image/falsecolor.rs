@@ -24,8 +24,8 @@ use crate::report::image as report;
 #[command(after_long_help = "\
 Examples:
   photopic image falsecolor render.exr -o nits.png
-  photopic image falsecolor room.hdr -o room.png --scale log --range 1:10000 --contours=10,100,1000
-  photopic image falsecolor display.exr -o display.svg --scale linear --range 0:99.5% --map inferno
+  photopic image falsecolor room.hdr -o room.png --scale log --limits 1:10000 --contours=10,100,1000
+  photopic image falsecolor display.exr -o display.svg --scale linear --limits 0:99.5% --map inferno
   photopic image falsecolor leaf.hdr -o leaf.png --illuminant D65 --white-luminance 100
   photopic image falsecolor cube.hdr                          (a quick look in the terminal)")]
 pub(in crate::cli) struct FalsecolorArgs {
@@ -65,7 +65,7 @@ pub(super) struct Colours {
     /// What the first and the last colour stand for: values, percentiles such as 1%, or nothing for the smallest and the largest
     /// value (of a logarithmic scale at most six decades).
     #[arg(long, value_name = "LOW:HIGH", value_parser = ends, allow_hyphen_values = true)]
-    range: Option<Ends>,
+    limits: Option<Ends>,
     /// Contour lines at round values, or at those given, such as --contours=100,300,1000.
     #[arg(long, value_name = "VALUE,…", num_args = 0..=1, require_equals = true, value_parser = levels, default_missing_value = "")]
     contours: Option<Levels>,
@@ -136,8 +136,8 @@ fn levels(text: &str) -> Result<Levels, String> {
 impl Colours {
     pub(super) fn false_colour(&self) -> FalseColour {
         FalseColour {
-            low: self.range.and_then(|r| r.low),
-            high: self.range.and_then(|r| r.high),
+            low: self.limits.and_then(|r| r.low),
+            high: self.limits.and_then(|r| r.high),
             logarithmic: match self.scale {
                 ScaleArg::Auto => None,
                 ScaleArg::Linear => Some(false),
