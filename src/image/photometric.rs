@@ -24,7 +24,7 @@ enum Way {
     /// From bands or colours.
     Planned(Box<Plan>),
     /// These channels hold it.
-    Found { channels: Vec<usize>, description: Description },
+    Found { channels: Vec<usize>, description: Box<Description> },
 }
 
 impl Photometric {
@@ -69,7 +69,10 @@ impl Photometric {
         {
             let planes = channels.iter().map(|c| image.channels[*c].clone()).collect();
             let description = Description::planes(image.width, image.height, planes);
-            return Ok(Checked::clean(Self::of_way(&description, |d| Way::Found { channels, description: d.clone() })));
+            return Ok(Checked::clean(Self::of_way(&description, |d| Way::Found {
+                channels,
+                description: Box::new(d.clone()),
+            })));
         }
         let plan = Plan::new(image, target, settings)?;
         Ok(plan.map(|plan| Self::of_way(&plan.description().clone(), |_| Way::Planned(Box::new(plan)))))

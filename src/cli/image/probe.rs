@@ -233,7 +233,7 @@ fn look(arguments: &ProbeArgs, path: &String, look: &Look<'_>, notes: &Notes) ->
             (Where::Shape(shape), Some(pixels)) => {
                 let probe =
                     probe(&mut seen.source, &measures, &shape, &pixels, &arguments.percentiles).map_err(failed)?;
-                Part::Shape { shape, probe }
+                Part::Shape { shape, probe: Box::new(probe) }
             }
             (Where::Line(line), _) => {
                 Part::Line { line, samples: profile(&mut seen.source, &measures, &along).map_err(failed)? }

@@ -32,7 +32,7 @@ pub enum Part {
         /// Which.
         shape: Shape,
         /// Its figures.
-        probe: Probe,
+        probe: Box<Probe>,
     },
     /// A line.
     Line {
