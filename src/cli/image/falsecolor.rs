@@ -205,7 +205,13 @@ pub(super) fn run(arguments: &FalsecolorArgs, talk: Talk) -> Result<(), Failure>
         findings.extend(odd(&picture).map(|f| f.at(Location::default().in_file(&seen.path))));
         let mut described = settings_json(&arguments.meaning, &settings);
         described["width"] = arguments.width.into();
-        let result = report::falsecolor(&seen.path, path, &way, &picture, &panel);
+        let legend = report::Legend {
+            range: [panel.range.low, panel.range.high],
+            logarithmic: panel.range.logarithmic,
+            map: format!("{:?}", panel.map).to_lowercase(),
+            contours: panel.levels.iter().map(|l| l.value).collect(),
+        };
+        let result = report::falsecolor(&seen.path, path, &way, &picture, &legend);
         let bytes = draw(&[Panel::from(panel)], None, format).map_err(|e| refused(&e))?;
         write_file(path, &bytes, &arguments.images)?;
         findings.extend(seen.noticed());

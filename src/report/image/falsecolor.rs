@@ -6,13 +6,25 @@ use serde_json::{Map, Value, json};
 
 use super::quantity;
 use crate::image::{Photometric, Picture};
-use crate::plot::FalseColourPanel;
 
 /// The title of an image's picture: its name and quantity.
 #[must_use]
 pub fn title(path: &str, photometric: &Photometric) -> String {
     let file = Path::new(path).file_name().map_or(path.into(), |n| n.to_string_lossy());
     format!("{file}: {}", quantity::name(photometric))
+}
+
+/// What the colours stand for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Legend {
+    /// Values of the first and the last colour.
+    pub range: [f64; 2],
+    /// In proportion to the logarithm.
+    pub logarithmic: bool,
+    /// Name of the colours.
+    pub map: String,
+    /// Values of the contour lines.
+    pub contours: Vec<f64>,
 }
 
 /// The object of `image falsecolor` in `results[]`.
@@ -22,7 +34,7 @@ pub fn falsecolor(
     output: &Path,
     photometric: &Photometric,
     picture: &Picture,
-    panel: &FalseColourPanel,
+    legend: &Legend,
 ) -> Map<String, Value> {
     let mut out = Map::new();
     let mut set = |key: &str, value: Value| {
@@ -40,9 +52,9 @@ pub fn falsecolor(
     set("infinite", s.infinite.into());
     set("negative", s.negative.into());
     set("unit", photometric.unit().into());
-    set("range", json!([panel.range.low, panel.range.high]));
-    set("scale", if panel.range.logarithmic { "log" } else { "linear" }.into());
-    set("map", format!("{:?}", panel.map).to_lowercase().into());
-    set("contours", panel.levels.iter().map(|l| l.value).collect::<Vec<_>>().into());
+    set("range", json!(legend.range));
+    set("scale", if legend.logarithmic { "log" } else { "linear" }.into());
+    set("map", legend.map.clone().into());
+    set("contours", legend.contours.clone().into());
     out
 }

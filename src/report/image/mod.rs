@@ -5,6 +5,6 @@ mod info;
 mod probe;
 mod quantity;
 
-pub use falsecolor::{falsecolor, title};
+pub use falsecolor::{Legend, falsecolor, title};
 pub use info::{info, info_text};
 pub use probe::{Part, Probed, Table, probe_csv, probe_text};
