@@ -8,6 +8,7 @@ pub mod cam02;
 pub mod cct;
 pub mod chromaticity;
 pub mod cri;
+pub mod difference;
 pub mod dominant;
 pub mod observer;
 pub mod reference;

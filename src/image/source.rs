@@ -80,6 +80,24 @@ impl<S: Source + ?Sized> Source for Box<S> {
     }
 }
 
+impl<S: Source + ?Sized> Source for &mut S {
+    fn description(&self) -> &Description {
+        (**self).description()
+    }
+
+    fn block(&self) -> (usize, usize) {
+        (**self).block()
+    }
+
+    fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), Error> {
+        (**self).read(region, channels, out)
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        (**self).findings()
+    }
+}
+
 /// Checks the promises that a caller of [`Source::read`] makes.
 ///
 /// # Panics

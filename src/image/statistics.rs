@@ -42,7 +42,7 @@ impl ChannelStatistics {
         (self.finite > 0).then(|| self.sum / self.finite as f64)
     }
 
-    fn add(&mut self, value: f32) {
+    pub(super) fn add(&mut self, value: f32) {
         self.negative += u64::from(value < 0.0);
         self.zero += u64::from(value == 0.0);
         if value.is_finite() {

@@ -127,6 +127,17 @@ pub(super) fn power_of_ten(power: i32) -> String {
     format!("×10{}", power.to_string().chars().map(digit).collect::<String>())
 }
 
+/// A level without needless zeros, three digits.
+pub(super) fn plain(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 12.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 12")]
+    let text = format!("{value:.*}", decimals as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// The title of a panel, shrunk and then cut if it is too long; gives the y below it.
 pub(super) fn title(sheet: &mut Sheet, area: Rect, title: &str) -> f64 {
     if title.trim().is_empty() {

@@ -1,9 +1,39 @@
-//! Colours for values: the perceptually uniform map *viridis*.
+//! Colours for values: the perceptually uniform maps *viridis*, *magma* and *inferno*.
 //!
-//! Every fifth of the 256 entries of `viridis` in matplotlib 3.11 (`_cm_listed.py`; S. van der Walt, N. Smith, E. Firing, 2015;
-//! CC0), as sRGB bytes. Straight lines between them are within one level of the whole table.
+//! Every fifth of the 256 entries of the tables in matplotlib 3.11 (`_cm_listed.py`; S. van der Walt, N. Smith, E. Firing, 2015;
+//! CC0), as sRGB bytes. Straight lines between them are within one level of the whole tables.
 
 const STEPS: usize = 51;
+
+/// A map from values to colours of evenly rising lightness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ColourMap {
+    /// Dark violet over green to yellow; also for eyes that do not tell red from green.
+    #[default]
+    Viridis,
+    /// Black over violet to pale yellow.
+    Magma,
+    /// Black over red to pale yellow.
+    Inferno,
+}
+
+impl ColourMap {
+    /// The colour of a share from 0 (dark) to 1 (light); outside clamped.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the table and to bytes")]
+    pub fn at(self, share: f64) -> [u8; 3] {
+        let table = match self {
+            Self::Viridis => &VIRIDIS,
+            Self::Magma => &MAGMA,
+            Self::Inferno => &INFERNO,
+        };
+        let at = share.clamp(0.0, 1.0) * STEPS as f64;
+        let i = (at as usize).min(STEPS - 1);
+        let t = at - i as f64;
+        let (a, b) = (table[i], table[i + 1]);
+        std::array::from_fn(|c| (f64::from(a[c]) + t * (f64::from(b[c]) - f64::from(a[c]))).round() as u8)
+    }
+}
 
 #[rustfmt::skip]
 const VIRIDIS: [[u8; 3]; STEPS + 1] = [
@@ -18,14 +48,35 @@ const VIRIDIS: [[u8; 3]; STEPS + 1] = [
     [216, 226, 25], [229, 228, 25], [241, 229, 29], [253, 231, 37],
 ];
 
+#[rustfmt::skip]
+const MAGMA: [[u8; 3]; STEPS + 1] = [
+    [0, 0, 4], [2, 2, 11], [5, 4, 22], [9, 7, 32], [14, 11, 43], [20, 14, 54],
+    [26, 16, 66], [33, 17, 78], [41, 17, 90], [49, 17, 101], [57, 15, 110], [66, 15, 117],
+    [74, 16, 121], [82, 19, 124], [90, 22, 126], [98, 25, 128], [106, 28, 129], [114, 31, 129],
+    [121, 34, 130], [129, 37, 129], [137, 40, 129], [145, 43, 129], [153, 45, 128], [161, 48, 126],
+    [170, 51, 125], [178, 53, 123], [186, 56, 120], [194, 59, 117], [202, 62, 114], [210, 66, 111],
+    [217, 70, 107], [224, 76, 103], [231, 82, 99], [236, 88, 96], [241, 96, 93], [244, 105, 92],
+    [247, 114, 92], [249, 123, 93], [251, 133, 96], [252, 142, 100], [253, 152, 105], [254, 161, 110],
+    [254, 170, 116], [254, 180, 123], [254, 189, 130], [254, 198, 138], [254, 207, 146], [254, 216, 154],
+    [253, 226, 163], [253, 235, 172], [252, 244, 182], [252, 253, 191],
+];
+
+#[rustfmt::skip]
+const INFERNO: [[u8; 3]; STEPS + 1] = [
+    [0, 0, 4], [2, 2, 12], [5, 4, 23], [10, 7, 34], [16, 9, 45], [22, 11, 57],
+    [30, 12, 69], [38, 12, 81], [47, 10, 91], [56, 9, 98], [64, 10, 103], [73, 11, 106],
+    [81, 14, 108], [89, 16, 110], [97, 19, 110], [105, 22, 110], [113, 25, 110], [120, 28, 109],
+    [128, 31, 108], [136, 34, 106], [144, 37, 104], [152, 39, 102], [160, 42, 99], [168, 46, 95],
+    [176, 49, 91], [183, 53, 87], [191, 57, 82], [198, 61, 77], [204, 66, 72], [211, 71, 67],
+    [217, 77, 61], [223, 83, 55], [228, 90, 49], [233, 97, 43], [237, 105, 37], [241, 113, 31],
+    [244, 121, 24], [247, 130, 18], [249, 139, 11], [250, 148, 7], [251, 157, 7], [252, 166, 12],
+    [252, 176, 20], [251, 186, 31], [250, 196, 42], [248, 205, 55], [246, 215, 70], [244, 225, 86],
+    [242, 234, 105], [242, 242, 125], [245, 249, 146], [252, 255, 164],
+];
+
 /// The colour of a share from 0 (dark violet) to 1 (yellow); outside clamped.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the table and to bytes")]
 pub(super) fn viridis(share: f64) -> [u8; 3] {
-    let at = share.clamp(0.0, 1.0) * STEPS as f64;
-    let i = (at as usize).min(STEPS - 1);
-    let t = at - i as f64;
-    let (a, b) = (VIRIDIS[i], VIRIDIS[i + 1]);
-    std::array::from_fn(|c| (f64::from(a[c]) + t * (f64::from(b[c]) - f64::from(a[c]))).round() as u8)
+    ColourMap::Viridis.at(share)
 }
 
 #[cfg(test)]
@@ -43,15 +94,26 @@ mod tests {
 
     #[test]
     fn lightness_climbs_evenly() {
-        let all: Vec<f64> = (0..=20).map(|i| lightness(viridis(f64::from(i) / 20.0))).collect();
+        let of = |map: ColourMap| (0..=20).map(|i| lightness(map.at(f64::from(i) / 20.0))).collect::<Vec<f64>>();
+        let all = of(ColourMap::Viridis);
         let mean = (all[20] - all[0]) / 20.0;
         // The authors made it even in CAM02-UCS, whose lightness is close to L*.
         assert!(all.windows(2).all(|w| (w[1] - w[0]) > 0.6 * mean && (w[1] - w[0]) < 1.4 * mean), "{all:?}");
+        // The others begin at black, where the two part.
+        for map in [ColourMap::Magma, ColourMap::Inferno] {
+            assert!(of(map).windows(2).all(|w| w[1] > w[0]), "{map:?} {:?}", of(map));
+        }
     }
 
     #[test]
     fn ends_and_beyond() {
-        // First and last entry of matplotlib's table: #440154, #FDE725.
-        assert_eq!((viridis(-1.0), viridis(2.0)), ([0x44, 0x01, 0x54], [0xFD, 0xE7, 0x25]));
+        // First and last entry of matplotlib's tables: #440154, #FDE725; #000004, #FCFDBF; #000004, #FCFFA4.
+        for (map, first, last) in [
+            (ColourMap::Viridis, [0x44, 0x01, 0x54], [0xFD, 0xE7, 0x25]),
+            (ColourMap::Magma, [0x00, 0x00, 0x04], [0xFC, 0xFD, 0xBF]),
+            (ColourMap::Inferno, [0x00, 0x00, 0x04], [0xFC, 0xFF, 0xA4]),
+        ] {
+            assert_eq!((map.at(-1.0), map.at(2.0)), (first, last));
+        }
     }
 }

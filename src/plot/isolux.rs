@@ -1,6 +1,6 @@
 //! Isolux diagram: lines of equal illuminance on a plane at equal scale, alone or over a false-colour picture.
 
-use super::axis::{self, MARGIN, Scale, TICK_TEXT};
+use super::axis::{self, MARGIN, Scale, TICK_TEXT, plain};
 use super::background;
 use super::clip;
 use super::colour_map::viridis;
@@ -226,17 +226,6 @@ impl IsoluxPanel {
             }
         }
     }
-}
-
-/// A level without needless zeros, three digits.
-fn plain(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return "0".to_owned();
-    }
-    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 12.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 12")]
-    let text = format!("{value:.*}", decimals as usize);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 fn length(points: &[Point]) -> f64 {

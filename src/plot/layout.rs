@@ -25,6 +25,7 @@ fn natural(panels: &[Panel]) -> (f64, f64) {
         [Panel::Spectrum(_) | Panel::Cartesian(_)] => (1000.0, 600.0),
         [Panel::Figures(f)] => (1000.0, f.height(1000.0)),
         [Panel::Isolux(p)] => p.natural(),
+        [Panel::FalseColour(p)] => p.natural(),
         [_] => (800.0, 800.0),
         _ => (SHEET, rows(panels).iter().map(|r| r.height).sum()),
     }
@@ -101,6 +102,7 @@ impl Panel {
             Self::Curves(p) => &p.title,
             Self::Raster(p) => &p.title,
             Self::Surface(p) => &p.title,
+            Self::FalseColour(p) => &p.title,
         }
     }
 
@@ -121,6 +123,7 @@ impl Panel {
             Self::Curves(p) => p.draw(sheet, area),
             Self::Raster(p) => p.draw(sheet, area),
             Self::Surface(p) => p.draw(sheet, area),
+            Self::FalseColour(p) => p.draw(sheet, area),
         }
     }
 }

@@ -40,6 +40,7 @@ mod colour_vector;
 mod cone;
 pub mod conversion;
 mod curves;
+mod falsecolour;
 mod figures;
 mod font;
 pub mod grid;
@@ -51,6 +52,7 @@ mod labels;
 mod layout;
 mod lobe;
 pub mod luminaire;
+pub mod luminance;
 mod png;
 mod polar;
 mod raster;
@@ -59,15 +61,18 @@ mod spectrum;
 mod spectrum_curves;
 mod surface;
 mod svg;
+pub mod terminal;
 mod web;
 
 pub use angular::{AngularCurve, MOST_ANGULAR_CURVES};
 pub use cartesian::{CartesianPanel, IntensityLevel};
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
 pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
+pub use colour_map::ColourMap;
 pub use colour_vector::ColourVectorPanel;
 pub use cone::{ConePanel, ConeStep};
 pub use curves::{CurvesPanel, NamedCurve};
+pub use falsecolour::{ColourRange, FalseColourPanel, Level};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
 pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};
@@ -122,6 +127,8 @@ pub enum Panel {
     Raster(RasterPanel),
     /// A lobe in space.
     Surface(SurfacePanel),
+    /// A false-colour picture with its legend.
+    FalseColour(FalseColourPanel),
 }
 
 macro_rules! panels {
@@ -147,7 +154,8 @@ panels! {
     Lobe: LobePanel,
     Curves: CurvesPanel,
     Raster: RasterPanel,
-    Surface: SurfacePanel
+    Surface: SurfacePanel,
+    FalseColour: FalseColourPanel
 }
 
 impl From<ColourVectorPanel> for Panel {

@@ -109,6 +109,15 @@ impl Raster<'_> {
                     bilinear(pixels, *columns as usize, *rows as usize, u, v)
                 })
             }
+            Op::Pixels { area, columns, rows, pixels } => {
+                let clip: Vec<Point> = area.corners().iter().map(|&p| self.place(p)).collect();
+                let ((x0, y0), (x1, y1)) = (clip[0], clip[2]);
+                self.shade(&clip, |x, y| {
+                    let i = index((x - x0) / (x1 - x0), *columns);
+                    let at = 3 * (index((y - y0) / (y1 - y0), *rows) * *columns as usize + i);
+                    [pixels[at], pixels[at + 1], pixels[at + 2]]
+                })
+            }
             Op::Text(text) => self.text(text),
         }
     }
@@ -241,6 +250,12 @@ fn gradient(stops: &[(f64, [u8; 3])], x: f64) -> [u8; 3] {
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between two bytes")]
 pub(super) fn mix(a: [u8; 3], b: [u8; 3], t: f64) -> [u8; 3] {
     std::array::from_fn(|i| (f64::from(a[i]) + t * (f64::from(b[i]) - f64::from(a[i]))).round() as u8)
+}
+
+/// Which of `count` cells a share from 0 to 1 falls into.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the cells")]
+fn index(share: f64, count: u32) -> usize {
+    ((share * f64::from(count)).max(0.0) as usize).min(count as usize - 1)
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]

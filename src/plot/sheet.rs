@@ -133,6 +133,8 @@ pub(super) enum Op {
     Gradient { outline: Vec<Point>, stops: Vec<(f64, [u8; 3])> },
     /// RGB pixels stretched over `area`, seen only within the polygon `clip`.
     Image { area: Rect, columns: u32, rows: u32, pixels: Vec<u8>, clip: Vec<Point> },
+    /// RGB pixels with sharp edges over `area`, their colours unchanged.
+    Pixels { area: Rect, columns: u32, rows: u32, pixels: Vec<u8> },
     /// A line of text.
     Text(Text),
 }

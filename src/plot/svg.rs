@@ -28,7 +28,7 @@ pub(super) fn write(sheet: &Sheet, size: (u32, u32)) -> Result<Vec<u8>, Error> {
     let mut body = String::new();
     let mut plain: Vec<&Op> = Vec::new();
     for op in &sheet.ops {
-        if matches!(op, Op::Gradient { .. } | Op::Image { .. }) {
+        if matches!(op, Op::Gradient { .. } | Op::Image { .. } | Op::Pixels { .. }) {
             body.push_str(&simple(&plain, (width, height))?);
             plain.clear();
             special(&mut body, op)?;
@@ -92,7 +92,7 @@ fn draw(backend: &mut SVGBackend<'_>, op: &Op) -> Result<(), String> {
             backend.draw_circle(place(*centre), units(*radius).unsigned_abs(), &colour(*ink), true)
         }
         Op::Text(text) => return draw_text(backend, text),
-        Op::Gradient { .. } | Op::Image { .. } => Ok(()),
+        Op::Gradient { .. } | Op::Image { .. } | Op::Pixels { .. } => Ok(()),
     };
     done.map_err(|e| e.to_string())
 }
@@ -141,6 +141,15 @@ fn special(out: &mut String, op: &Op) -> Result<(), Error> {
             let _ = writeln!(
                 out,
                 "<image clip-path=\"url(#{id})\" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" \
+                 preserveAspectRatio=\"none\" href=\"data:image/png;base64,{file}\"/>"
+            );
+        }
+        Op::Pixels { area, columns, rows, pixels } => {
+            let file = font::base64(&png::encode(pixels, *columns, *rows)?);
+            let (x, y, w, h) = (units(area.x0), units(area.y0), units(area.width()), units(area.height()));
+            let _ = writeln!(
+                out,
+                "<image style=\"image-rendering:pixelated\" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" \
                  preserveAspectRatio=\"none\" href=\"data:image/png;base64,{file}\"/>"
             );
         }

@@ -93,7 +93,7 @@ enum ToneArg {
 /// What the samples are, and how they are weighted.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Photometry and colour")]
-struct MeaningArgs {
+pub(super) struct MeaningArgs {
     /// What the samples are of, where the file does not say: radiance, irradiance, exitance, …, relative.
     #[arg(long, value_name = "QUANTITY")]
     quantity: Option<Quantity>,
@@ -105,11 +105,11 @@ struct MeaningArgs {
     illuminant: Option<String>,
     /// Observer of --to xyz: cie-1931-2deg, cie-1964-10deg, cie-2015-2deg, cie-2015-10deg.
     #[arg(long, value_name = "NAME", default_value_t)]
-    observer: Observer,
+    pub observer: Observer,
     /// Luminous efficiency function of --to luminance: cie-1924-v, judd-1951-v, judd-vos-1978-v, cie-1964-v10, cie-2008-v-2deg,
     /// cie-2008-v-10deg.
     #[arg(long, value_name = "NAME", default_value_t)]
-    efficiency: Efficiency,
+    pub efficiency: Efficiency,
     /// Luminance (cd/m2) of RGB (1, 1, 1): of the output, and of an input that does not state its own; for reflectance, of the
     /// perfect diffuser.
     #[arg(long, value_name = "CD_PER_M2", value_parser = positive)]
@@ -241,10 +241,10 @@ fn spectrum(path: &str) -> Result<Spectrum, Failure> {
     }
 }
 
-impl ConvertArgs {
+impl MeaningArgs {
     /// The settings of a plan.
-    fn settings(&self) -> Result<Settings, Failure> {
-        let m = &self.meaning;
+    pub(super) fn settings(&self) -> Result<Settings, Failure> {
+        let m = self;
         let light = |name: &String| {
             let spectrum = if named::is_name(name) {
                 let source = named::source(name, SecondRadiation::default());
@@ -264,7 +264,9 @@ impl ConvertArgs {
             adaptation: m.adaptation,
         })
     }
+}
 
+impl ConvertArgs {
     fn target(&self, format: Format) -> Result<Option<Target>, Failure> {
         let Some(path) = &self.weighting else {
             let usual = match format {
@@ -296,7 +298,7 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
         },
         bits: if arguments.writing.sixteen_bit { Bits::Sixteen } else { Bits::Eight },
     };
-    let (settings, target) = (arguments.settings()?, arguments.target(options.format)?);
+    let (settings, target) = (arguments.meaning.settings()?, arguments.target(options.format)?);
     let tone = arguments.tone.settings(target.as_ref())?;
     let opened = open(&arguments.images, &arguments.reading)?;
     notes.print(&opened.findings);

@@ -1,5 +1,10 @@
-//! Images as JSON and text.
+//! Images as JSON, CSV and text.
 
+mod falsecolor;
 mod info;
+mod probe;
+mod quantity;
 
+pub use falsecolor::{Legend, falsecolor, title};
 pub use info::{info, info_text};
+pub use probe::{Part, Probed, Table, probe_csv, probe_text};
