@@ -1,11 +1,10 @@
 //! Look-ups in a table of MERL's size at random directions, and opening its file.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use glam::DVec3;
-use photopic::brdf::coordinates::HalfDiff;
 use photopic::brdf::format::merl;
 use photopic::brdf::table::{Channel, HalfAngle, Resolution};
 use photopic::geometry::direction::from_angles;
@@ -40,19 +39,60 @@ fn nearest(bencher: Bencher) {
     });
 }
 
-/// The same by arc functions, as the published reader does it.
-#[divan::bench(name = "brdf/lookup/merl/arc_functions")]
-fn arc_functions(bencher: Bencher) {
+#[divan::bench(name = "brdf/lookup/merl/nearest_many")]
+fn nearest_many(bencher: Bencher) {
     let (table, pairs) = (table(), pairs());
+    let mut bins = vec![0; pairs.len()];
+    bencher.counter(ItemsCount::new(pairs.len())).bench_local(|| {
+        table.bins_of(black_box(&pairs), &mut bins);
+        bins.iter().map(|b| table.bin(*b).iter().sum::<f32>()).sum::<f32>()
+    });
+}
+
+/// What finding the bins costs without the table.
+#[divan::bench(name = "brdf/lookup/merl/bins_alone")]
+fn bins_alone(bencher: Bencher) {
+    let (table, pairs) = (table(), pairs());
+    let mut bins = vec![0; pairs.len()];
+    bencher.counter(ItemsCount::new(pairs.len())).bench_local(|| table.bins_of(black_box(&pairs), &mut bins));
+}
+
+/// What the table costs without finding the bins.
+#[divan::bench(name = "brdf/lookup/merl/memory_alone")]
+fn memory_alone(bencher: Bencher) {
+    let (table, pairs) = (table(), pairs());
+    let mut bins = vec![0; pairs.len()];
+    table.bins_of(&pairs, &mut bins);
+    bencher
+        .counter(ItemsCount::new(pairs.len()))
+        .bench_local(|| black_box(&bins).iter().map(|b| table.bin(*b).iter().sum::<f32>()).sum::<f32>());
+}
+
+/// The same with the arithmetic of the reader that was published with the tables: the half vector by its angles, ω_i turned about two
+/// axes, arc cosines and arc tangents, three planes of doubles.
+#[divan::bench(name = "brdf/lookup/merl/published")]
+fn published(bencher: Bencher) {
+    let bins = Resolution::MERL.bins();
+    let planes: Vec<f64> = (0..3 * bins).map(|i| i as f64).collect();
+    let pairs = pairs();
+    let turned = |v: DVec3, axis: DVec3, angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        v * cos + axis * (axis.dot(v) * (1.0 - cos)) + axis.cross(v) * sin
+    };
     bencher.counter(ItemsCount::new(pairs.len())).bench(|| {
-        let mut sum = 0.0_f32;
+        let mut sum = 0.0;
         for &(i, o) in black_box(&pairs) {
-            let a = HalfDiff::new(i, o);
-            let h = ((a.theta_h / FRAC_PI_2).sqrt() * 90.0) as usize;
-            let d = (a.theta_d / FRAC_PI_2 * 90.0) as usize;
-            let p = (a.phi_d / TAU * 360.0) as usize % 180;
-            let bin = table.bin((h.min(89) * 90 + d.min(89)) * 180 + p);
-            sum += bin[0] + bin[1] + bin[2];
+            let half = (0.5 * (i + o)).normalize();
+            let (theta_h, phi_h) = (half.z.acos(), half.y.atan2(half.x));
+            let difference = turned(turned(i, DVec3::Z, -phi_h), DVec3::Y, -theta_h);
+            let (theta_d, phi_d) = (difference.z.acos(), difference.y.atan2(difference.x));
+            let phi_d = if phi_d < 0.0 { phi_d + PI } else { phi_d };
+            let h = ((theta_h.max(0.0) / FRAC_PI_2 * 8100.0).sqrt() as usize).min(89);
+            let d = ((theta_d / FRAC_PI_2 * 90.0) as usize).min(89);
+            let p = ((phi_d / PI * 180.0) as usize).min(179);
+            let bin = (h * 90 + d) * 180 + p;
+            sum +=
+                planes[bin] / 1500.0 + planes[bin + bins] * (1.15 / 1500.0) + planes[bin + 2 * bins] * (1.66 / 1500.0);
         }
         sum
     });
@@ -64,9 +104,20 @@ fn open(bencher: Bencher) {
     bencher.counter(BytesCount::new(bytes.len())).bench(|| merl::parse(black_box(&bytes)));
 }
 
-/// What opening is measured against: the same bytes copied once.
-#[divan::bench(name = "brdf/open/copy")]
-fn copy(bencher: Bencher) {
+/// What opening is measured against: the same bytes read from a file that the system has in memory.
+#[divan::bench(name = "brdf/open/read")]
+fn read(bencher: Bencher) {
     let bytes = merl::write(&table()).expect("three channels");
-    bencher.counter(BytesCount::new(bytes.len())).bench(|| black_box(&bytes).clone());
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), &bytes).expect("written");
+    bencher.counter(BytesCount::new(bytes.len())).bench(|| std::fs::read(file.path()));
+}
+
+/// Both, as a user opens a file.
+#[divan::bench(name = "brdf/open/read_and_parse")]
+fn read_and_parse(bencher: Bencher) {
+    let bytes = merl::write(&table()).expect("three channels");
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    std::fs::write(file.path(), &bytes).expect("written");
+    bencher.counter(BytesCount::new(bytes.len())).bench(|| merl::parse(&std::fs::read(file.path()).expect("the file")));
 }

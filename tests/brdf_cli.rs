@@ -179,3 +179,47 @@ fn pictures_are_drawn_in_both_formats() {
         }
     }
 }
+
+#[test]
+fn a_table_is_compressed_measured_and_inferred() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let basis = path("set.basis");
+    let materials = ["lambert(reflectance=0.1)", "ggx(alpha=0.3, medium=Au)", "ggx(alpha=0.2, medium=Cu)"];
+    let compress = |arguments: &[&str]| run(&[&["compress"], arguments].concat(), "");
+    let bins = ["--resolution", "8x8x6", "-o", basis.as_str()];
+    let (code, _, stderr) = compress(&[&["train"], &materials[..], &bins[..]].concat());
+    assert_eq!(code, 0, "{stderr}");
+    let (csv, table, mask) = (path("c.csv"), path("t.binary"), path("t.mask"));
+    let (code, _, stderr) = compress(&["encode", materials[1], "-b", &basis, "--csv", "-o", &csv]);
+    assert_eq!(code, 0, "{stderr}");
+    let (code, _, stderr) = compress(&["decode", &csv, "-b", &basis, "-o", &table, "--mask", &mask]);
+    assert_eq!(code, 0, "{stderr}");
+    // Three numbers of bins; three planes of doubles, and a byte per bin.
+    let bins = 8 * 8 * 6;
+    assert_eq!(fs::read(&table).expect("a table").len(), 12 + 24 * bins);
+    let known = fs::read(&mask).expect("a mask");
+    assert!(known.len() == 12 + bins && !known[12..].contains(&2));
+    // Measured where it says: those bins, and no others.
+    let (_, chosen, _) = compress(&["directions", "-b", &basis, "-n", "3", "--csv"]);
+    let rows: Vec<&str> = chosen.lines().skip(1).collect();
+    let points: String = rows.iter().map(|r| ["R", "G", "B"].map(|c| format!("{r},{c},0.2\n")).concat()).collect();
+    let measured = path("m.csv");
+    let head = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,number,bin,channel,value\n";
+    fs::write(&measured, format!("{head}{points}")).expect("written");
+    let (code, _, stderr) = compress(&["infer", &measured, "-b", &basis, "-o", &table, "--mask", &mask]);
+    assert_eq!(code, 0, "{stderr}");
+    let known = fs::read(&mask).expect("a mask");
+    let mut expected: Vec<usize> =
+        rows.iter().map(|r| r.rsplit(',').next().and_then(|b| b.parse().ok()).expect("a bin")).collect();
+    expected.sort_unstable();
+    let found: Vec<usize> = (0..bins).filter(|b| known[12 + b] == 2).collect();
+    assert_eq!(found, expected);
+    // A damaged basis is refused.
+    let mut bytes = fs::read(&basis).expect("a basis");
+    let middle = bytes.len() - 40;
+    bytes[middle] ^= 1;
+    fs::write(&basis, bytes).expect("written");
+    let (code, _, stderr) = compress(&["directions", "-b", &basis]);
+    assert!(code == 2 && stderr.contains("set.basis: found"), "{stderr}");
+}

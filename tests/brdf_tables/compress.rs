@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use photopic::brdf::Brdf;
+use photopic::brdf::compress::file::{BasisFile, FileError};
 use photopic::brdf::compress::{Collection, Error, Grid, Training};
 use photopic::brdf::sgd::{Band, Sgd};
 use photopic::brdf::table::{Channel, HalfAngle, Known, Resolution};
@@ -155,4 +156,30 @@ fn what_does_not_fit_is_refused() {
     assert!(matches!(basis.project(&[1.0]), Err(Error::Count { found: 1, expected: 20, .. })));
     assert_eq!(basis.infer(&[(20, 1.0)]).err(), Some(Error::Bin { bin: 20, bins: 20 }));
     assert_eq!(basis.infer(&[(3, 1.0), (3, 1.0)]).err(), Some(Error::Bin { bin: 3, bins: 20 }));
+}
+
+#[test]
+fn a_basis_file_comes_back_and_no_damage_passes() {
+    let resolution = Resolution { theta_h: 4, theta_d: 4, phi_d: 4 };
+    let mut collection = Collection::new(resolution);
+    for table in 1..4 {
+        let values = (0..64).map(|b| ((b * table) as f32 * 0.37).sin() + 1.5).collect();
+        let table = HalfAngle::new(resolution, vec![Channel::Wavelength(550.0)], values).expect("a table");
+        collection.add(&table).expect("a table");
+    }
+    let (grid, training) = collection.train().expect("three columns");
+    let (basis, variance) = (training.covariance(2), training.variance());
+    let file = BasisFile { grid, basis, weighted: false, columns: 3, variance, sources: Vec::new() };
+    let mut bytes = Vec::new();
+    let checksum = file.write(&mut bytes).expect("a vector takes all");
+    let read = |bytes: &[u8]| BasisFile::read(&mut &bytes[..]);
+    assert_eq!(read(&bytes).expect("our own file"), (file, checksum));
+    for at in 0..bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x40;
+        assert!(read(&damaged).is_err(), "byte {at}");
+        assert!(read(&bytes[..at]).is_err(), "cut off at {at}");
+    }
+    bytes.push(0);
+    assert!(matches!(read(&bytes), Err(FileError::Trailing)));
 }

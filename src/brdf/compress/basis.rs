@@ -2,6 +2,10 @@
 
 use std::sync::Arc;
 
+use nalgebra::{Cholesky, DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::samples::NOISE;
 use super::{Error, Mapping};
 
 /// Components of a set of columns.
@@ -48,36 +52,71 @@ impl Basis {
         self.mapping.forward(bin, value) - f64::from(self.mean[bin])
     }
 
-    /// The coefficients of a column of values in 1/sr, one per bin.
+    /// The mean of the set in x, bin by bin.
+    pub(super) fn mean(&self) -> &[f32] {
+        &self.mean
+    }
+
+    /// All components, bin by bin.
+    pub(super) fn all(&self) -> &[f32] {
+        &self.components
+    }
+
+    /// The coefficients of a column of values in 1/sr, one per bin, those of the largest variance first: the first of them are
+    /// those of fewer components.
+    ///
+    /// Bins that are NaN do not take part. Where there are some, the components are not orthonormal over the others, and the
+    /// coefficients are the most probable ones for the variances of the set:
+    ///
+    /// ```text
+    /// c = (BᵀB + σ² V⁻¹)⁻¹ Bᵀ x,    σ² = 0.001
+    /// ```
     ///
     /// # Errors
-    /// [`Error::Count`] for a column of another length.
+    /// [`Error::Count`] for a column of another length, [`Error::NothingInCommon`] for one of nothing but NaN.
     pub fn project(&self, column: &[f32]) -> Result<Vec<f64>, Error> {
         self.check("values in the column", column.len(), self.mapping.bins())?;
+        let known = || column.iter().enumerate().filter(|(_, v)| !v.is_nan());
         let mut coefficients = vec![0.0; self.components()];
-        for (bin, value) in column.iter().enumerate() {
+        for (bin, value) in known() {
             let x = self.centred(bin, f64::from(*value));
             coefficients.iter_mut().zip(self.row(bin)).for_each(|(c, b)| *c += x * f64::from(*b));
         }
-        Ok(coefficients)
+        match known().count() {
+            0 => return Err(Error::NothingInCommon),
+            n if n == column.len() => return Ok(coefficients),
+            _ => {}
+        }
+        let k = self.components();
+        let mut system = DMatrix::from_diagonal(&DVector::from_iterator(k, self.variances.iter().map(|v| NOISE / v)));
+        for (bin, _) in known() {
+            let row = self.row(bin);
+            for (i, a) in row.iter().enumerate() {
+                row[..=i].iter().enumerate().for_each(|(j, b)| system[(i, j)] += f64::from(*a) * f64::from(*b));
+            }
+        }
+        // Its lower half is all that is read; positive definite by its diagonal.
+        let projected = DVector::from_vec(coefficients);
+        let solved = Cholesky::new(system).map_or_else(|| DVector::zeros(k), |c| c.solve(&projected));
+        Ok(solved.iter().copied().collect())
     }
 
-    /// The column of coefficients, in 1/sr.
+    /// The column of coefficients, in 1/sr. Components without coefficient stay at the mean.
     ///
     /// # Errors
-    /// [`Error::Count`] for another number of coefficients.
+    /// [`Error::Count`] for more coefficients than there are components.
     pub fn reconstruct(&self, coefficients: &[f64]) -> Result<Vec<f32>, Error> {
-        self.check("coefficients", coefficients.len(), self.components())?;
+        self.check("coefficients", coefficients.len(), coefficients.len().min(self.components()))?;
         let value = |bin: usize| {
             let sum: f64 = coefficients.iter().zip(self.row(bin)).map(|(c, b)| c * f64::from(*b)).sum();
             #[expect(clippy::cast_possible_truncation, reason = "columns are kept in single precision")]
             let single = self.mapping.inverse(bin, f64::from(self.mean[bin]) + sum) as f32;
             single
         };
-        Ok((0..self.mapping.bins()).map(value).collect())
+        Ok((0..self.mapping.bins()).into_par_iter().map(value).collect())
     }
 
-    /// The distance of two columns: rms over bins of ln((f̂ w + ε)/(f w + ε)).
+    /// The distance of two columns: rms over bins of ln((f̂ w + ε)/(f w + ε)). Bins that are NaN in either do not take part.
     ///
     /// # Errors
     /// [`Error::Count`] for columns of other lengths.
@@ -85,8 +124,10 @@ impl Basis {
         self.check("values in the first column", a.len(), self.mapping.bins())?;
         self.check("values in the second column", b.len(), self.mapping.bins())?;
         let x = |bin: usize, v: f32| self.mapping.forward(bin, f64::from(v));
-        let squares = a.iter().zip(b).enumerate().map(|(bin, (a, b))| (x(bin, *a) - x(bin, *b)).powi(2));
-        Ok((squares.sum::<f64>() / a.len() as f64).sqrt())
+        let known = a.iter().zip(b).enumerate().filter(|(_, (a, b))| !a.is_nan() && !b.is_nan());
+        let squares = |(sum, n), (bin, (a, b)): (usize, (&f32, &f32))| (sum + (x(bin, *a) - x(bin, *b)).powi(2), n + 1);
+        let (sum, n) = known.fold((0.0, 0_usize), squares);
+        Ok((sum / n.max(1) as f64).sqrt())
     }
 
     pub(super) fn check(&self, what: &'static str, found: usize, expected: usize) -> Result<(), Error> {

@@ -1,5 +1,7 @@
 //! The log-relative mapping.
 
+use rayon::prelude::*;
+
 /// ε, in units of f w.
 pub(super) const EPSILON: f64 = 1e-3;
 /// Least weight of a bin.
@@ -17,15 +19,27 @@ pub struct Mapping {
 impl Mapping {
     /// The mapping relative to the median of columns, bin by bin.
     pub(super) fn of(weights: Vec<f32>, columns: &[Vec<f32>]) -> Self {
-        let mut bin = vec![0.0_f32; columns.len()];
-        let median = |(i, w): (usize, &f32)| {
+        let n = columns.len();
+        let median = |bin: &mut Vec<f32>, i: usize, w: f32| {
             bin.iter_mut().zip(columns).for_each(|(b, c)| *b = c[i]);
-            bin.sort_by(f32::total_cmp);
-            let middle = 0.5 * (f64::from(bin[bin.len() / 2]) + f64::from(bin[(bin.len() - 1) / 2]));
-            level(middle, *w) as f32
+            let (below, upper, _) = bin.select_nth_unstable_by(n / 2, f32::total_cmp);
+            let upper = *upper;
+            let lower = if n % 2 == 1 { upper } else { below.iter().copied().fold(f32::NEG_INFINITY, f32::max) };
+            level(0.5 * (f64::from(lower) + f64::from(upper)), w) as f32
         };
-        let reference = weights.iter().enumerate().map(median).collect();
+        let indexed = weights.par_iter().enumerate();
+        let reference = indexed.map_init(|| vec![0.0; n], |bin, (i, w)| median(bin, i, *w)).collect();
         Self { weights, reference }
+    }
+
+    /// Of weights and ln(f_ref w + ε).
+    pub(super) fn of_reference(weights: Vec<f32>, reference: Vec<f32>) -> Self {
+        Self { weights, reference }
+    }
+
+    /// ln(f_ref w + ε) of every bin.
+    pub(super) fn reference(&self) -> &[f32] {
+        &self.reference
     }
 
     /// Number of bins.

@@ -9,7 +9,8 @@
 //! A *column* is one channel of one material. [`Collection`] takes tables one by one and keeps the bins that all of them measured;
 //! [`Training`] maps the columns and has their Gram matrix (columns × columns: 100 tables of 4.4 M values need 1.3 GB for the
 //! columns and as much again for 300 components); [`Basis`] has components, takes coefficients from a column or from a few measured
-//! bins, and gives the column back, each bin marked as measured or inferred.
+//! bins, and gives the column back, each bin marked as measured or inferred; [`file`] keeps it, with its grid; [`cross_validate`]
+//! tells how well columns come back that the set does not hold.
 //!
 //! The scale of errors is the mapping's own: rms over bins of ln((f̂ w + ε)/(f w + ε)).
 //!
@@ -18,15 +19,22 @@
 
 mod basis;
 mod collection;
+pub mod file;
+mod grid;
 mod mapping;
+mod resample;
 mod samples;
 mod training;
+mod validation;
 
 pub use basis::Basis;
-pub use collection::{Collection, Grid};
+pub use collection::Collection;
+pub use grid::Grid;
 pub use mapping::Mapping;
+pub use resample::resample;
 pub use samples::Reconstruction;
 pub use training::Training;
+pub use validation::{Score, cross_validate};
 
 /// Why a set of tables could not be compressed, or a table not be reconstructed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -39,6 +47,14 @@ pub enum Error {
         found: [usize; 3],
         /// Those of the others.
         expected: [usize; 3],
+    },
+    /// Fewer tables than parts to be held out in turn, or fewer than two parts.
+    #[error("found {tables} tables for {folds} folds; expected at least two folds, and a table for each")]
+    Folds {
+        /// Number of tables.
+        tables: usize,
+        /// Number of parts.
+        folds: usize,
     },
     /// Fewer columns than a mean and a component need.
     #[error("found {found} columns; expected at least 2")]

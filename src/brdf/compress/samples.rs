@@ -18,7 +18,7 @@ use super::{Basis, Error};
 use crate::brdf::table::Known;
 
 /// Variance of a measured x.
-const NOISE: f64 = 1e-3;
+pub(super) const NOISE: f64 = 1e-3;
 
 /// A column of which some bins were measured.
 #[derive(Debug, Clone, PartialEq)]

@@ -58,6 +58,18 @@ impl Training {
         Ok(Self { mapping: Arc::new(mapping), mean, columns, gram })
     }
 
+    /// Number of columns.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Variance of the set in x: the sum over all components.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        self.gram.trace() / self.columns.len() as f64
+    }
+
     /// The best basis of so many components (fewer where the columns have no more).
     #[must_use]
     pub fn basis(&self, components: usize) -> Basis {
@@ -103,8 +115,10 @@ impl Training {
         let k = combinations.ncols();
         let mut components = vec![0.0_f32; self.mapping.bins() * k];
         if k > 0 {
+            // Transposed once: the product with a transpose is not the fast one.
+            let turned = combinations.transpose();
             components.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, out)| {
-                let product = combinations.tr_mul(&self.block(block * BLOCK, out.len() / k));
+                let product = &turned * self.block(block * BLOCK, out.len() / k);
                 #[expect(clippy::cast_possible_truncation, reason = "components are kept in single precision")]
                 out.iter_mut().zip(product.iter()).for_each(|(o, p)| *o = *p as f32);
             });

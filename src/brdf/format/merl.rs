@@ -5,7 +5,7 @@
 //! f_r = value · (1/1500, 1.15/1500, 1.66/1500)      red, green, blue; a negative value marks a bin without measurement
 //! ```
 //!
-//! Values are kept in single precision (6e-8 relative). Missing bins are written as −1.
+//! Values are kept in single precision (6e-8 relative). A bin that lacks one channel lacks all. Missing bins are written as −1.
 //!
 //! Reference: W. Matusik et al., *A Data-Driven Reflectance Model* (2003), and the reader published with the database.
 
@@ -17,6 +17,8 @@ use crate::finding::{Checked, Finding, Location};
 const HEADER: usize = 12;
 /// 1/sr per unit of the file, red, green, blue.
 const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
+/// What is not below it is no value: single precision could not keep it.
+const MOST: f64 = 1e38;
 
 /// Whether the length is that of a table with the numbers of bins at its beginning.
 #[must_use]
@@ -56,17 +58,23 @@ pub fn parse(bytes: &[u8]) -> Result<Checked<HalfAngle>, Error> {
     #[expect(clippy::cast_possible_truncation, reason = "the bytes are there, so the counts fit")]
     let [theta_h, theta_d, phi_d] = n.map(|n| n as usize);
     let resolution = Resolution { theta_h, theta_d, phi_d };
-    let plane = resolution.bins() * 8;
-    let (red, rest) = bytes[HEADER..].split_at(plane);
-    let (green, blue) = rest.split_at(plane);
-    let planes = red.chunks_exact(8).zip(green.chunks_exact(8)).zip(blue.chunks_exact(8));
-    let mut values = Vec::with_capacity(3 * resolution.bins());
-    for ((r, g), b) in planes {
-        let bin = [value(r, SCALE[0]), value(g, SCALE[1]), value(b, SCALE[2])];
-        values.extend_from_slice(&bin);
+    resolution.check()?;
+    let bins = resolution.bins();
+    let (numbers, _) = bytes[HEADER..].as_chunks::<8>();
+    let (red, rest) = numbers.split_at(bins);
+    let (green, blue) = rest.split_at(bins);
+    // Read, scaled, interleaved and counted in one pass over memory that nobody has touched yet.
+    let mut values = vec![0.0_f32; 3 * bins];
+    let mut missing = 0;
+    for (bin, ((r, g), b)) in values.as_chunks_mut().0.iter_mut().zip(red.iter().zip(green).zip(blue)) {
+        let file = [r, g, b].map(|eight| f64::from_le_bytes(*eight));
+        let measured = file.iter().fold(true, |all, v| all & (*v >= 0.0) & (*v < MOST));
+        missing += usize::from(!measured);
+        #[expect(clippy::cast_possible_truncation, reason = "kept in single precision")]
+        let single = |c: usize| if measured { (file[c] * SCALE[c]) as f32 } else { f32::NAN };
+        *bin = [single(0), single(1), single(2)];
     }
-    let table = HalfAngle::new(resolution, Channel::rgb(), values)?;
-    let (bins, missing) = table.coverage();
+    let table = HalfAngle::of_bins(resolution, Channel::rgb(), values);
     let mut findings = Vec::new();
     if missing > 0 {
         let share = 100.0 * missing as f64 / bins as f64;
@@ -74,16 +82,6 @@ pub fn parse(bytes: &[u8]) -> Result<Checked<HalfAngle>, Error> {
             .push(Finding::info("B104", format!("{missing} of {bins} bins ({share:.1} %) are marked as not measured")));
     }
     Ok(Checked { value: table, findings })
-}
-
-/// A value of the file in 1/sr; NaN for the mark of a missing bin and for what is no number.
-fn value(bytes: &[u8], scale: f64) -> f32 {
-    let mut eight = [0; 8];
-    eight.copy_from_slice(bytes);
-    let value = f64::from_le_bytes(eight);
-    #[expect(clippy::cast_possible_truncation, reason = "kept in single precision")]
-    let single = (value * scale) as f32;
-    if value >= 0.0 { single } else { f32::NAN }
 }
 
 /// A table of three channels as the bytes of a file; `None` for another number of channels.

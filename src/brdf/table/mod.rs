@@ -15,6 +15,7 @@
 mod adaptive;
 mod angular;
 mod axis;
+mod borders;
 mod half_angle;
 mod kd_tree;
 mod marginal;

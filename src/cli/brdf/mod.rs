@@ -1,6 +1,7 @@
 //! `brdf`: materials described in words or files, audited, evaluated and drawn; one file per verb.
 
 mod check;
+mod compress;
 mod eval;
 mod load;
 mod plot;
@@ -20,6 +21,9 @@ pub(super) enum BrdfCommand {
     Eval(eval::EvalArgs),
     /// Lobes, albedo and a lit sphere as SVG or PNG.
     Plot(plot::PlotArgs),
+    /// Compact forms of measured materials: principal components, and whole tables from a few measured directions.
+    #[command(subcommand)]
+    Compress(compress::CompressCommand),
 }
 
 pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
@@ -28,5 +32,6 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
         BrdfCommand::Plot(a) => plot::plot(&a),
+        BrdfCommand::Compress(command) => compress::run(command, talk),
     }
 }

@@ -50,7 +50,7 @@ pub(in crate::cli) struct PlotArgs {
 }
 
 pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
-    let format = format_of(&arguments.output)?;
+    let format = format_of("-o", &arguments.output)?;
     let [path] = &arguments.materials.materials[..] else {
         let count = arguments.materials.materials.len();
         return Err(Failure::Message(format!("{count} materials; expected one per picture")));
@@ -105,10 +105,11 @@ pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
     write_file(&arguments.output, &bytes, std::slice::from_ref(path))
 }
 
-fn format_of(path: &Path) -> Result<Format, Failure> {
+/// The format of a picture by its name; `option` is how the name was given.
+pub(super) fn format_of(option: &str, path: &Path) -> Result<Format, Failure> {
     match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
         Some("svg") => Ok(Format::Svg),
         Some("png") => Ok(Format::Png),
-        _ => Err(Failure::Message(format!("-o {}: expected a file name ending in .svg or .png", path.display()))),
+        _ => Err(Failure::Message(format!("{option} {}: expected a file name ending in .svg or .png", path.display()))),
     }
 }
