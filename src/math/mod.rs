@@ -1,7 +1,9 @@
-//! Numerical tools without units: interpolation kernels, contour lines, adaptive cubature, random numbers and their warps.
+//! Numerical tools without units: interpolation kernels, contour lines, adaptive cubature, least squares, random numbers and
+//! their warps.
 
 pub mod contour;
 pub mod cubature;
 pub mod interpolate;
+pub mod least_squares;
 pub mod random;
 pub mod sampling;
