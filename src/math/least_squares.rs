@@ -76,6 +76,11 @@ pub struct Minimum {
 /// Largest λ: a step of this length gains nothing but rounding.
 const STIFFEST: f64 = 1e16;
 
+/// Expected gain, relative to Σ r², of steps that are taken for what they promise.
+const TRUSTED: f64 = 1e-12;
+/// Rounding of Σ r², relative to it.
+const ROUNDING: f64 = 1e-13;
+
 /// The minimum that is reached from `start` (moved into the box); `None` where the problem has no value there.
 pub fn minimise(problem: &impl Problem, start: &[f64], low: &[f64], high: &[f64], limits: &Limits) -> Option<Minimum> {
     let mut x: Vec<f64> = start.iter().zip(low.iter().zip(high)).map(|(x, (l, h))| x.clamp(*l, *h)).collect();
@@ -100,11 +105,13 @@ pub fn minimise(problem: &impl Problem, start: &[f64], low: &[f64], high: &[f64]
         let trial: Vec<f64> =
             x.iter().zip(step.iter()).zip(low.iter().zip(high)).map(|((x, d), (l, h))| (x + d).clamp(*l, *h)).collect();
         let gain = problem.cost(&trial).filter(|c| c.is_finite()).map_or(f64::NEG_INFINITY, |c| at.cost - c);
-        if gain > 0.0 {
+        // Near the minimum the gain drowns in the rounding of Σ r², while Jᵀr still points to it: such steps are trusted.
+        let drowned = expected <= TRUSTED * at.cost && gain >= -ROUNDING * at.cost;
+        if gain > 0.0 || drowned {
             let Some(next) = problem.linearise(&trial) else { break };
             (x, at) = (trial, next);
             scale.iter_mut().zip(at.normal.diagonal().iter()).for_each(|(s, d)| *s = s.max(*d));
-            let quality = gain / expected.max(f64::MIN_POSITIVE);
+            let quality = if drowned { 1.0 } else { gain / expected.max(f64::MIN_POSITIVE) };
             damping *= (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
             growth = 2.0;
         } else {

@@ -67,7 +67,8 @@ impl Coordinates {
             }
             let listed = |list: &[String]| list.iter().any(|n| n != Scope::ALL && names(n, o));
             let all = |list: &[String]| list.iter().any(|n| n == Scope::ALL);
-            let shared = !per_band || bands == 1 || listed(&scope.shared) || all(&scope.shared) && !listed(&scope.per_band);
+            let shared =
+                !per_band || bands == 1 || listed(&scope.shared) || all(&scope.shared) && !listed(&scope.per_band);
             columns.push(Column {
                 scale: scale(&o.parameter),
                 shared,

@@ -127,8 +127,9 @@ impl Samples {
         }
         let mut random = Stream::new(SEED, n as u64);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the places")]
-        let chosen: Vec<usize> =
-            (0..count).map(|i| (((i as f64 + random.uniform()) / count as f64 * n as f64) as usize).min(n - 1)).collect();
+        let chosen: Vec<usize> = (0..count)
+            .map(|i| (((i as f64 + random.uniform()) / count as f64 * n as f64) as usize).min(n - 1))
+            .collect();
         let mut out = Self {
             channels: self.channels.clone(),
             directions: chosen.iter().map(|i| self.directions[*i]).collect(),
