@@ -99,6 +99,7 @@ impl Panel {
             Self::Isolux(p) => &p.title,
             Self::Lobe(p) => &p.title,
             Self::Curves(p) => &p.title,
+            Self::Dots(p) => &p.title,
             Self::Raster(p) => &p.title,
             Self::Surface(p) => &p.title,
         }
@@ -119,6 +120,7 @@ impl Panel {
             Self::Isolux(p) => p.draw(sheet, area),
             Self::Lobe(p) => p.draw(sheet, area),
             Self::Curves(p) => p.draw(sheet, area),
+            Self::Dots(p) => p.draw(sheet, area),
             Self::Raster(p) => p.draw(sheet, area),
             Self::Surface(p) => p.draw(sheet, area),
         }

@@ -31,6 +31,7 @@ mod angular;
 mod axis;
 mod background;
 pub mod brdf;
+pub mod brdf_fit;
 mod cartesian;
 mod chromaticity;
 mod clip;
@@ -40,6 +41,7 @@ mod colour_vector;
 mod cone;
 pub mod conversion;
 mod curves;
+mod dots;
 mod figures;
 mod font;
 pub mod grid;
@@ -68,6 +70,7 @@ pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
 pub use colour_vector::ColourVectorPanel;
 pub use cone::{ConePanel, ConeStep};
 pub use curves::{CurvesPanel, NamedCurve};
+pub use dots::{DotsPanel, Series};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
 pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};
@@ -118,6 +121,8 @@ pub enum Panel {
     Lobe(LobePanel),
     /// Curves over an angle.
     Curves(CurvesPanel),
+    /// Data against a model.
+    Dots(DotsPanel),
     /// A picture.
     Raster(RasterPanel),
     /// A lobe in space.
@@ -146,6 +151,7 @@ panels! {
     Figures: FiguresPanel,
     Lobe: LobePanel,
     Curves: CurvesPanel,
+    Dots: DotsPanel,
     Raster: RasterPanel,
     Surface: SurfacePanel
 }

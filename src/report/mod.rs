@@ -4,6 +4,7 @@
 //! could not be determined is `null` beside a finding that says why.
 
 pub mod brdf;
+pub mod brdf_fit;
 pub mod conversion;
 pub mod csv;
 pub mod envelope;

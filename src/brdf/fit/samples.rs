@@ -112,6 +112,12 @@ impl Samples {
         self.places
     }
 
+    /// The places: ω_i, ω_o, values.
+    pub fn iter(&self) -> impl Iterator<Item = (DVec3, DVec3, &[f64])> {
+        let values = self.values.chunks_exact(self.channels.len());
+        self.directions.iter().zip(values).map(|(&(i, o), v)| (i, o, v))
+    }
+
     /// Number of negative values, which noise makes: they stay in all measures but the logarithmic one, where they count as 0.
     #[must_use]
     pub fn negative(&self) -> usize {

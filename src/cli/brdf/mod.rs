@@ -2,6 +2,7 @@
 
 mod check;
 mod eval;
+mod fit;
 mod load;
 mod plot;
 
@@ -18,6 +19,8 @@ pub(super) enum BrdfCommand {
     Check(check::CheckArgs),
     /// Values at lists of directions.
     Eval(eval::EvalArgs),
+    /// Models fitted to measured tables, with standard errors, and compared.
+    Fit(fit::FitArgs),
     /// Lobes, albedo and a lit sphere as SVG or PNG.
     Plot(plot::PlotArgs),
 }
@@ -27,6 +30,7 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Info(a) => check::info(&a, talk),
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
+        BrdfCommand::Fit(a) => fit::fit(&a, talk),
         BrdfCommand::Plot(a) => plot::plot(&a),
     }
 }

@@ -105,7 +105,7 @@ pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
     write_file(&arguments.output, &bytes, std::slice::from_ref(path))
 }
 
-fn format_of(path: &Path) -> Result<Format, Failure> {
+pub(super) fn format_of(path: &Path) -> Result<Format, Failure> {
     match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
         Some("svg") => Ok(Format::Svg),
         Some("png") => Ok(Format::Png),
