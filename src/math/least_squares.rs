@@ -184,9 +184,13 @@ pub struct Inverse {
     /// Smallest over largest eigenvalue of JᵀJ scaled to a unit diagonal: 1 where the variables do not disturb one another, 0
     /// where some cannot be told apart.
     pub condition: f64,
-    /// The eigenvector of the smallest: which variables, scaled alike, can be moved against one another.
-    pub direction: Vec<f64>,
+    /// Eigenvectors of those below [`SINGULAR`] of the largest: which variables, scaled alike, can be moved against one another.
+    pub loose: Vec<Vec<f64>>,
 }
+
+/// Eigenvalue over the largest below which variables count as inseparable: derivatives by differences are good to 1e-9, so that a
+/// true zero comes out below 1e-16.
+pub const SINGULAR: f64 = 1e-10;
 
 /// Inverts JᵀJ over the variables `free`. Eigenvalues below 1e-14 of the largest are raised to that: the result is finite, and huge
 /// along what the data do not tell.
@@ -197,13 +201,10 @@ pub fn invert(normal: &DMatrix<f64>, free: &[usize]) -> Inverse {
     let scaled = DMatrix::from_fn(free.len(), free.len(), |r, c| normal[(free[r], free[c])] / (unit[r] * unit[c]));
     let eigen = SymmetricEigen::new(scaled);
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
-    let smallest = (0..free.len()).min_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    let (condition, direction) = match smallest {
-        Some(i) if largest > 0.0 => {
-            ((eigen.eigenvalues[i] / largest).max(0.0), eigen.eigenvectors.column(i).iter().copied().collect())
-        }
-        _ => (0.0, vec![0.0; free.len()]),
-    };
+    let smallest = eigen.eigenvalues.iter().copied().fold(largest, f64::min);
+    let condition = if largest > 0.0 { (smallest / largest).max(0.0) } else { 0.0 };
+    let below = (0..free.len()).filter(|i| eigen.eigenvalues[*i] < SINGULAR * largest);
+    let loose = below.map(|i| eigen.eigenvectors.column(i).iter().copied().collect()).collect();
     let matrix = DMatrix::from_fn(free.len(), free.len(), |r, c| {
         let vectors = &eigen.eigenvectors;
         let sum: f64 = (0..free.len())
@@ -211,7 +212,7 @@ pub fn invert(normal: &DMatrix<f64>, free: &[usize]) -> Inverse {
             .sum();
         sum / (unit[r] * unit[c])
     });
-    Inverse { matrix, condition, direction }
+    Inverse { matrix, condition, loose }
 }
 
 #[cfg(test)]
@@ -256,7 +257,8 @@ mod tests {
         let normal = DMatrix::from_row_slice(3, 3, &[1.0, 10.0, 0.0, 10.0, 100.0, 0.0, 0.0, 0.0, 4.0]);
         let inverse = invert(&normal, &[0, 1, 2]);
         assert!(inverse.condition < 1e-14, "{inverse:?}");
-        let d = &inverse.direction;
+        let d = &inverse.loose[0];
+        assert_eq!(inverse.loose.len(), 1);
         assert!((d[0] + d[1]).abs() < 1e-12 && d[0].abs() > 0.7 && d[2].abs() < 1e-12, "{d:?}");
         let apart = invert(&normal, &[1, 2]);
         assert!((apart.condition - 1.0).abs() < 1e-15 && (apart.matrix[(0, 0)] - 0.01).abs() < 1e-15, "{apart:?}");

@@ -274,11 +274,14 @@ pub fn text(answer: &Answer<'_>) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         out,
-        "{}: {} of {} places, {} bands, minimised: {}",
+        "{}: {} of {} places, {}, minimised: {}",
         answer.path,
         samples.len(),
         samples.places(),
-        samples.channels().len(),
+        match samples.channels().len() {
+            1 => "1 band".to_owned(),
+            n => format!("{n} bands"),
+        },
         metric(options.metric)
     );
     for f in answer.fits {

@@ -8,6 +8,7 @@ mod fits;
 mod fitting;
 mod oracles;
 mod physics;
+mod ranking;
 mod sampling;
 mod strd;
 

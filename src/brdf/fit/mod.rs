@@ -187,8 +187,10 @@ pub struct Fit {
 
 /// Limits of the minimisation on the subset.
 const FIRST: Limits = Limits { iterations: 60, step: 1e-6, gain: 1e-9 };
+/// Places of a second, larger subset, on which the best start goes on.
+const MIDDLE_PLACES: usize = 40_000;
 /// And on all places.
-const LAST: Limits = Limits { iterations: 100, step: 1e-9, gain: 1e-13 };
+const LAST: Limits = Limits { iterations: 100, step: 1e-9, gain: 1e-12 };
 /// Powers by which the largest difference is approached.
 const POWERS: [f64; 5] = [4.0, 8.0, 16.0, 32.0, 64.0];
 
@@ -221,8 +223,13 @@ pub fn fit(template: &Template, samples: &Samples, options: &Options) -> Result<
     let first = fitted.subset(options.first_places.max(4 * coordinates.count));
     let (best, starts) = best_start(&Objective { samples: first.as_ref().unwrap_or(fitted), ..objective }, options)?;
     let (low, high) = coordinates.bounds();
-    let mut found =
-        minimise(&objective, &best.x, &low, &high, &LAST).ok_or(Error::NoStart { starts: options.starts })?;
+    // Of a large table a part leads most of the way.
+    let nearer = fitted
+        .subset(MIDDLE_PLACES)
+        .filter(|_| fitted.len() > 4 * MIDDLE_PLACES)
+        .and_then(|middle| minimise(&Objective { samples: &middle, ..objective }, &best.x, &low, &high, &FIRST));
+    let from = nearer.map_or(best.x, |m| m.x);
+    let mut found = minimise(&objective, &from, &low, &high, &LAST).ok_or(Error::NoStart { starts: options.starts })?;
     if options.metric == Metric::Largest {
         found = level(&objective, found, options.epsilon);
     }

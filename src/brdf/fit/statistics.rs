@@ -76,10 +76,7 @@ pub(super) struct Spread {
     pub(super) criteria: Option<Criteria>,
 }
 
-/// Condition of the scaled JᵀWJ below which variables count as inseparable: derivatives by differences are good to 1e-9, so that a
-/// true zero comes out below 1e-16.
-const SINGULAR: f64 = 1e-10;
-/// Part of the weakest direction from which on a variable belongs to it.
+/// Part of a loose direction (a unit vector) from which on a variable belongs to it.
 const INVOLVED: f64 = 0.05;
 
 pub(super) fn spread(objective: &Objective<'_>, found: &Minimum, metric: Metric) -> Spread {
@@ -95,9 +92,8 @@ pub(super) fn spread(objective: &Objective<'_>, found: &Minimum, metric: Metric)
         criteria = Criteria::new(at.cost, n, coordinates.count);
         let inverse = invert(&at.normal, &free);
         condition = inverse.condition;
-        if condition < SINGULAR {
-            let norm = inverse.direction.iter().map(|d| d.abs()).fold(0.0, f64::max);
-            free.iter().zip(&inverse.direction).for_each(|(v, d)| weak[*v] = d.abs() > INVOLVED * norm);
+        for direction in &inverse.loose {
+            free.iter().zip(direction).for_each(|(v, d)| weak[*v] |= d.abs() > INVOLVED);
         }
         let freedom = (n.saturating_sub(free.len())).max(1) as f64;
         // From variables to parameters.
