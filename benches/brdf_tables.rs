@@ -5,7 +5,6 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use glam::DVec3;
-use photopic::brdf::Brdf;
 use photopic::brdf::coordinates::HalfDiff;
 use photopic::brdf::description::template::Template;
 use photopic::brdf::description::{Bands, Material};
