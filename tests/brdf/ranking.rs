@@ -32,7 +32,7 @@ fn median(values: &mut [f64]) -> f64 {
 #[ignore = "prints the table of docs/brdf-fits.md; minutes"]
 fn ranking() {
     let Some(path) = shared("brdf/merl_sgd_params.csv") else { return };
-    let resolution = Resolution { theta_h: 45, theta_d: 45, phi_d: 36 };
+    let resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 18 };
     let scope = Scope { shared: vec!["f0".into(), "rs".into()], per_band: Vec::new() };
     let mut errors: HashMap<&str, Vec<f64>> = HashMap::new();
     let mut counts = HashMap::new();
@@ -52,7 +52,8 @@ fn ranking() {
             let names = |n: &&String| template.open().iter().any(|o| o.parameter.name == n.as_str());
             let shared = scope.shared.iter().filter(names).cloned().collect();
             let scope = Scope { shared, per_band: Vec::new() };
-            let found = fit(&template, &samples, &Options { scope, ..Options::default() }).expect(model);
+            let options = Options { scope, starts: 6, first_places: 1000, ..Options::default() };
+            let found = fit(&template, &samples, &options).expect(model);
             errors.entry(name).or_default().push(found.measures.cosine_rms);
             counts.insert(name, found.estimates.len());
         }
