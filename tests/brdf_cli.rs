@@ -206,7 +206,9 @@ fn a_table_is_fitted_and_the_material_reads_back() {
     let (material, picture) = (inside("fitted.toml"), inside("fit.svg"));
     let models = ["-m", "lambert", "-m", "lambert + ggx", "--shared", "f0"];
     let (code, _, stderr) = run(&[&["fit", &data][..], &models].concat(), "");
-    // The first model has no f0 to share.
+    // The first model has no f0 to share; the second one has.
+    assert_eq!(code, 0, "{stderr}");
+    let (code, _, stderr) = run(&["fit", &data, "-m", "lambert", "--shared", "f0"], "");
     assert!(code == 2 && stderr.contains("no open parameter is called `f0`"), "{stderr}");
     let arguments =
         ["fit", &data, "-m", "oren-nayar", "-m", "lambert + ggx", "--json", "-o", &material, "--plot", &picture];

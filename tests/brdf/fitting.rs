@@ -207,12 +207,7 @@ fn parameters_come_back_within_their_standard_errors() {
                 inside[i] += f64::from(u8::from((fit.estimates[i].value - expected).abs() <= 1.96 * error));
             }
         }
-        let (mut low, high) = binomial(draws as f64);
-        if proportional {
-            // White's errors are of large samples: with few places in the lobe they are too small by some per cent (MacKinnon & White
-            // 1985 find coverages near 90 % for HC1).
-            low = 0.88 * draws as f64;
-        }
+        let (low, high) = binomial(draws as f64);
         assert!(
             inside.iter().all(|n| (low..=high).contains(n)),
             "{proportional}: {inside:?} of {draws}, {low} to {high}"

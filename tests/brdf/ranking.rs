@@ -34,6 +34,7 @@ fn ranking() {
     let Some(path) = shared("brdf/merl_sgd_params.csv") else { return };
     let resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 18 };
     let scope = Scope { shared: vec!["f0".into(), "rs".into()], per_band: Vec::new() };
+    let templates: Vec<Template> = MODELS.iter().map(|(_, m)| m.parse().expect("a template")).collect();
     let mut errors: HashMap<&str, Vec<f64>> = HashMap::new();
     let mut counts = HashMap::new();
     for row in rows(&path) {
@@ -47,13 +48,10 @@ fn ranking() {
         }
         let table = Table::HalfAngle(HalfAngle::new(resolution, Channel::rgb(), values).expect("a table"));
         let samples = Samples::new(&table, &Selection { max_theta_deg: 80.0, ..Selection::default() }).expect("places");
-        for (name, model) in MODELS {
-            let template: Template = model.parse().expect(model);
-            let names = |n: &&String| template.open().iter().any(|o| o.parameter.name == n.as_str());
-            let shared = scope.shared.iter().filter(names).cloned().collect();
-            let scope = Scope { shared, per_band: Vec::new() };
+        for ((name, model), template) in MODELS.iter().copied().zip(&templates) {
+            let scope = scope.of(template, &templates);
             let options = Options { scope, starts: 6, first_places: 1000, ..Options::default() };
-            let found = fit(&template, &samples, &options).expect(model);
+            let found = fit(template, &samples, &options).expect(model);
             errors.entry(name).or_default().push(found.measures.cosine_rms);
             counts.insert(name, found.estimates.len());
         }

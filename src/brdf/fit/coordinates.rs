@@ -218,7 +218,7 @@ impl Column {
 const START_SEED: u64 = 1963;
 
 /// Whether `name` means an open parameter: `f0`, `ggx.f0`, `2.f0` (the second model of the sum), `all`.
-fn names(name: &str, open: &Open) -> bool {
+pub(super) fn names(name: &str, open: &Open) -> bool {
     match name.rsplit_once('.') {
         None => name == Scope::ALL || name == open.parameter.name,
         Some((model, parameter)) => {

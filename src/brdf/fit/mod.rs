@@ -128,6 +128,18 @@ pub struct Scope {
 
 impl Scope {
     const ALL: &'static str = "all";
+
+    /// What of it concerns one of several models: a name that another of them has is none of this one's business; a name that none has
+    /// stays, to be refused.
+    #[must_use]
+    pub fn of(&self, template: &Template, among: &[Template]) -> Self {
+        let has = |name: &str, t: &Template| t.open().iter().any(|o| coordinates::names(name, o));
+        let kept = |names: &[String]| {
+            let concerns = |n: &&String| has(n, template) || !among.iter().any(|t| has(n, t));
+            names.iter().filter(concerns).cloned().collect()
+        };
+        Self { shared: kept(&self.shared), per_band: kept(&self.per_band) }
+    }
 }
 
 /// How to fit.

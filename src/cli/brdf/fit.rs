@@ -212,7 +212,8 @@ pub(super) fn fit(arguments: &FitArgs, talk: Talk) -> Result<(), Failure> {
         };
         let mut fits: Vec<Fit> = Vec::new();
         for template in &arguments.models {
-            match fit::fit(template, &samples, &options) {
+            let scope = options.scope.of(template, &arguments.models);
+            match fit::fit(template, &samples, &Options { scope, ..options.clone() }) {
                 Ok(fit) => fits.push(fit),
                 Err(error) => {
                     let message = format!("{path}: {template}: {error}");
