@@ -4,8 +4,8 @@
 //! minimise Σ_places Σ_bands w r(f(ω_i, ω_o; θ), y)²        r by the chosen measure (metric)
 //! ```
 //!
-//! Bounded Levenberg-Marquardt ([`crate::math::least_squares`]) from several starts on a subset of the places, then from the best of
-//! them on all. Parameters that enter linearly need no treatment of their own: one step of the method solves them. Only measured places
+//! Bounded Levenberg-Marquardt ([`crate::math::least_squares`]) from several starts on a subset of the places; the lowest valleys
+//! are followed on a larger one, and the lowest of them on all. Parameters that enter linearly need no treatment of their own: one step of the method solves them. Only measured places
 //! take part, none that a table would interpolate.
 //!
 //! **Standard errors** are those of the linearised model, over the variables that rest at no bound:
@@ -199,7 +199,9 @@ pub struct Fit {
 
 /// Limits of the minimisation on the subset.
 const FIRST: Limits = Limits { iterations: 60, step: 1e-6, gain: 1e-9 };
-/// Places of a second, larger subset, on which the best start goes on.
+/// Valleys that are followed beyond the first subset.
+const VALLEYS: usize = 3;
+/// Places of a second, larger subset, on which they are.
 const MIDDLE_PLACES: usize = 40_000;
 /// And on all places.
 const LAST: Limits = Limits { iterations: 100, step: 1e-9, gain: 1e-12 };
@@ -233,15 +235,17 @@ pub fn fit(template: &Template, samples: &Samples, options: &Options) -> Result<
         return Err(Error::Dirac);
     }
     let first = fitted.subset(options.first_places.max(4 * coordinates.count));
-    let (best, starts) = best_start(&Objective { samples: first.as_ref().unwrap_or(fitted), ..objective }, options)?;
+    let on_first = Objective { samples: first.as_ref().unwrap_or(fitted), ..objective };
+    let (best, starts) = best_starts(&on_first, options)?;
+    // Which valley is the lowest a larger part of the table tells better; it also leads most of the way.
     let (low, high) = coordinates.bounds();
-    // Of a large table a part leads most of the way.
-    let nearer = fitted
-        .subset(MIDDLE_PLACES)
-        .filter(|_| fitted.len() > 4 * MIDDLE_PLACES)
-        .and_then(|middle| minimise(&Objective { samples: &middle, ..objective }, &best.x, &low, &high, &FIRST));
-    let from = nearer.map_or(best.x, |m| m.x);
-    let mut found = minimise(&objective, &from, &low, &high, &LAST).ok_or(Error::NoStart { starts: options.starts })?;
+    let middle = fitted.subset(MIDDLE_PLACES).filter(|_| fitted.len() > 4 * MIDDLE_PLACES);
+    let on_middle = Objective { samples: middle.as_ref().unwrap_or(fitted), ..objective };
+    let nearer = best.iter().filter_map(|m| minimise(&on_middle, &m.x, &low, &high, &FIRST));
+    let nearer =
+        nearer.min_by(|a, b| a.at.cost.total_cmp(&b.at.cost)).ok_or(Error::NoStart { starts: options.starts })?;
+    let mut found =
+        minimise(&objective, &nearer.x, &low, &high, &LAST).ok_or(Error::NoStart { starts: options.starts })?;
     if options.metric == Metric::Largest {
         found = level(&objective, found, options.epsilon);
     }
@@ -265,19 +269,22 @@ pub fn fit(template: &Template, samples: &Samples, options: &Options) -> Result<
     })
 }
 
-/// The best of the minima that the starts lead to, and how many starts came to it.
-fn best_start(objective: &Objective<'_>, options: &Options) -> Result<(Minimum, (usize, usize)), Error> {
+/// The lowest of the valleys that the starts lead to, lowest first, and how many starts came to that one.
+fn best_starts(objective: &Objective<'_>, options: &Options) -> Result<(Vec<Minimum>, (usize, usize)), Error> {
     let (low, high) = objective.coordinates.bounds();
     let count = options.starts.max(1);
     let run = |i: usize| minimise(objective, &objective.coordinates.start(i as u64), &low, &high, &FIRST);
     let found: Vec<Option<Minimum>> = (0..count).into_par_iter().map(run).collect();
-    let found: Vec<Minimum> = found.into_iter().flatten().collect();
-    let least = found.iter().map(|m| m.at.cost).fold(f64::INFINITY, f64::min);
+    let mut found: Vec<Minimum> = found.into_iter().flatten().collect();
+    found.sort_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
+    let least = found.first().ok_or(Error::NoStart { starts: count })?.at.cost;
     // Of data without noise nothing is left, but not exactly.
     let nothing = 1e-12 * objective.samples.values.iter().map(|v| v * v).sum::<f64>();
-    let reached = found.iter().filter(|m| m.at.cost <= 1.001 * least + nothing).count();
-    let best = found.into_iter().min_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
-    best.map(|b| (b, (count, reached))).ok_or(Error::NoStart { starts: count })
+    let same = |a: f64, b: f64| b <= 1.001 * a + nothing;
+    let reached = found.iter().filter(|m| same(least, m.at.cost)).count();
+    found.dedup_by(|b, a| same(a.at.cost, b.at.cost));
+    found.truncate(VALLEYS);
+    Ok((found, (count, reached)))
 }
 
 /// Goes on from the least squares to the least largest difference.
