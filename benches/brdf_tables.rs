@@ -5,8 +5,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use glam::DVec3;
+use photopic::brdf::description::template::Template;
+use photopic::brdf::description::{Bands, Material};
+use photopic::brdf::fit::{Options, Samples, Scope, Selection, fit};
 use photopic::brdf::format::merl;
-use photopic::brdf::table::{Channel, HalfAngle, Resolution};
+use photopic::brdf::table::{Channel, HalfAngle, Resolution, Table};
 use photopic::geometry::direction::from_angles;
 use photopic::math::random::Stream;
 
@@ -120,4 +123,27 @@ fn read_and_parse(bencher: Bencher) {
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), &bytes).expect("written");
     bencher.counter(BytesCount::new(bytes.len())).bench(|| merl::parse(&std::fs::read(file.path()).expect("the file")));
+}
+
+/// The best of three parameters for all 4.4 million values of a table, from a material that the model does not meet exactly.
+#[divan::bench(name = "brdf/fit/merl/three_parameters", sample_count = 5, sample_size = 1)]
+fn fit_three(bencher: Bencher) {
+    let material: Material = "lambert(reflectance=0.2) + beckmann(alpha=0.15, f0=0.1)".parse().expect("a material");
+    let brdf = material.prepare(Bands::Channels(3)).expect("a material");
+    let (mut values, mut f) = (Vec::with_capacity(3 * Resolution::MERL.bins()), [0.0; 3]);
+    for bin in 0..Resolution::MERL.bins() {
+        let (i, o) = Resolution::MERL.centre(bin).directions();
+        brdf.evaluate(i, o, &mut f);
+        values.extend(f.map(|v| v as f32));
+    }
+    let table = Table::HalfAngle(HalfAngle::new(Resolution::MERL, Channel::rgb(), values).expect("a table"));
+    let template: Template = "lambert + ggx".parse().expect("a template");
+    let scope = Scope { shared: vec!["all".into()], per_band: Vec::new() };
+    let options = Options { scope, ..Options::default() };
+    bencher.bench(|| {
+        let samples = Samples::new(&table, &Selection::default()).expect("places");
+        let found = fit(&template, &samples, &options).expect("a fit");
+        assert!(found.converged && found.estimates.len() == 3);
+        found.measures
+    });
 }

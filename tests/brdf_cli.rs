@@ -223,3 +223,88 @@ fn a_table_is_compressed_measured_and_inferred() {
     let (code, _, stderr) = compress(&["directions", "-b", &basis]);
     assert!(code == 2 && stderr.contains("set.basis: found"), "{stderr}");
 }
+
+/// A table of points of a material, as CSV.
+fn points(folder: &Path, material: &str) -> String {
+    let angles = ["--theta-i", "5:75:14", "--theta-o", "2:80:6", "--phi", "0,60,120,180", "-w", "450,550,650", "--csv"];
+    let (code, table, stderr) = run(&[&["eval", material][..], &angles].concat(), "");
+    assert_eq!(code, 0, "{stderr}");
+    let mut out = String::from("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,wavelength_nm,value\n");
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    for row in reader.records() {
+        let row = row.expect("a row");
+        out.push_str(&[&row[1], &row[2], &row[3], &row[4], &row[5], &row[7]].join(","));
+        out.push('\n');
+    }
+    let path = folder.join("points.csv");
+    fs::write(&path, out).expect("written");
+    path.to_str().expect("a plain path").to_owned()
+}
+
+#[test]
+fn a_table_is_fitted_and_the_material_reads_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let truth = "lambert(reflectance=[[450, 0.1], [650, 0.5]]) + ggx(alpha=0.3, f0=0.06)";
+    let data = points(folder.path(), truth);
+    let inside = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let (material, picture) = (inside("fitted.toml"), inside("fit.svg"));
+    let models = ["-m", "lambert", "-m", "lambert + ggx", "--shared", "f0"];
+    let (code, _, stderr) = run(&[&["fit", &data][..], &models].concat(), "");
+    // The first model has no f0 to share; the second one has.
+    assert_eq!(code, 0, "{stderr}");
+    let (code, _, stderr) = run(&["fit", &data, "-m", "lambert", "--shared", "f0"], "");
+    assert!(code == 2 && stderr.contains("no open parameter is called `f0`"), "{stderr}");
+    let arguments =
+        ["fit", &data, "-m", "oren-nayar", "-m", "lambert + ggx", "--json", "-o", &material, "--plot", &picture];
+    let (code, document, stderr) = run(&arguments, "");
+    assert_eq!(code, 0, "{stderr}");
+    let document = json(&document);
+    let result = &document["results"][0];
+    let fit = &result["fits"][1];
+    assert_eq!((&result["best"], fit["parameters"].as_array().map(Vec::len)), (&fit["model"], Some(7)));
+    // Linear from 450 to 650 nm.
+    for (i, expected) in [0.1, 0.3, 0.5, 0.3, 0.06, 0.06, 0.06].into_iter().enumerate() {
+        let value = fit["parameters"][i]["value"].as_f64().expect("a number");
+        assert!((value - expected).abs() < 1e-6 * expected, "{fit}");
+    }
+    assert_eq!(fit["parameters"][1]["wavelength_nm"], 550.0);
+    assert!(result["comparison"][0]["akaike_weight"].as_f64() > Some(0.99), "{result}");
+    assert_eq!(result["places_used"], result["places"]);
+    let values = |argument: &str| {
+        let (code, table, stderr) = run(&["eval", argument, "-w", "450,550,650", "--csv"], "");
+        assert_eq!(code, 0, "{stderr}");
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        reader.records().map(|r| r.expect("a row")[7].parse::<f64>().expect("a value")).collect::<Vec<_>>()
+    };
+    assert!(values(&material).iter().zip(values(truth)).all(|(a, b)| (a - b).abs() < 1e-6 * b));
+    let svg = fs::read_to_string(&picture).expect("a picture");
+    assert!(svg.contains("light at 45°") && svg.contains("model against table"), "{svg}");
+    let (code, table, _) = run(&["fit", &data, "-m", "lambert", "-m", "oren-nayar", "--csv"], "");
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    assert_eq!(reader.headers().expect("headers").len(), 14);
+    assert_eq!((code, reader.records().count()), (0, 2));
+    let (_, text, stderr) = run(&["fit", &data, "-m", "lambert + lambert", "--metric", "log", "--band", "2"], "");
+    assert!(text.contains("1.lambert.reflectance") && stderr.contains("B202"), "{text} {stderr}");
+}
+
+#[test]
+fn what_cannot_be_fitted_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let data = points(folder.path(), "lambert(reflectance=0.5)");
+    for (arguments, expected) in [
+        (vec!["fit", "nowhere.binary", "-m", "ggx"], "nowhere.binary: cannot be read"),
+        (vec!["fit", &data, "-m", "lambert(reflectance=0.5)"], "no parameter is open"),
+        (vec!["fit", &data, "-m", "ggx(rho=?)"], "`ggx` has no parameter `rho`"),
+        (vec!["fit", &data, "-m", "mirror"], "nothing but a Dirac lobe"),
+        (vec!["fit", &data, "-m", "lambert", "--max-theta", "1"], "expected more places than free parameters"),
+        (vec!["fit", &data, "-m", "lambert", "--max-theta", "95"], "--max-theta is 95; expected above 0 to 90"),
+        (vec!["fit", &data, "-m", "lambert", "--band", "4"], "band 4 of a table of 3; expected 1 to 3"),
+        (vec!["fit", &data, "-m", "ggx", "--per-band", "alpha"], "`alpha` is one number for all bands"),
+        (vec!["fit", &data, "-m", "lambert", "--starts", "0"], "expected 1 or more"),
+        (vec!["fit", &data, "-m", "lambert", "-o", &data], "overwrite an input"),
+        (vec!["fit", "-", "-m", "lambert"], "-:1:1: "),
+    ] {
+        let (code, _, stderr) = run(&arguments, "");
+        assert!(code == 2 && stderr.contains(expected), "{arguments:?}: {code} {stderr}");
+    }
+}

@@ -25,6 +25,7 @@
 //! | [`medium`] | refractive indices of a few substances |
 //! | [`description`] | materials in words, for the command line, files and scenes |
 //! | [`audit`] | reciprocity, energy, sign, symmetry, coverage |
+//! | [`fit`] | fitting models to measured tables |
 //! | [`reflectance`] | reflectances between directions, cones, hemispheres |
 //! | [`parameter`] | names and ranges of parameters |
 //!
@@ -43,6 +44,7 @@ pub mod audit;
 pub mod compress;
 pub mod coordinates;
 pub mod description;
+pub mod fit;
 pub mod format;
 pub mod fresnel;
 pub mod lambert;

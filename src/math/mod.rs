@@ -1,8 +1,10 @@
-//! Numerical tools without units: interpolation kernels, contour lines, order statistics, adaptive cubature, random numbers and their warps.
+//! Numerical tools without units: interpolation kernels, contour lines, order statistics, adaptive cubature, least squares, random
+//! numbers and their warps.
 
 pub mod contour;
 pub mod cubature;
 pub mod interpolate;
+pub mod least_squares;
 pub mod order;
 pub mod random;
 pub mod sampling;

@@ -31,6 +31,7 @@ mod angular;
 mod axis;
 mod background;
 pub mod brdf;
+pub mod brdf_fit;
 mod cartesian;
 mod chromaticity;
 mod clip;
@@ -40,6 +41,7 @@ mod colour_vector;
 mod cone;
 pub mod conversion;
 mod curves;
+mod dots;
 mod falsecolour;
 mod figures;
 mod font;
@@ -72,6 +74,7 @@ pub use colour_map::ColourMap;
 pub use colour_vector::ColourVectorPanel;
 pub use cone::{ConePanel, ConeStep};
 pub use curves::{CurvesPanel, NamedCurve};
+pub use dots::{DotsPanel, Series};
 pub use falsecolour::{ColourRange, FalseColourPanel, Level};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
@@ -123,6 +126,8 @@ pub enum Panel {
     Lobe(LobePanel),
     /// Curves over an angle.
     Curves(CurvesPanel),
+    /// Data against a model.
+    Dots(DotsPanel),
     /// A picture.
     Raster(RasterPanel),
     /// A lobe in space.
@@ -153,6 +158,7 @@ panels! {
     Figures: FiguresPanel,
     Lobe: LobePanel,
     Curves: CurvesPanel,
+    Dots: DotsPanel,
     Raster: RasterPanel,
     Surface: SurfacePanel,
     FalseColour: FalseColourPanel

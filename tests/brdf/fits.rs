@@ -11,7 +11,7 @@ use photopic::math::random::Stream;
 
 use crate::common::{rows, shared};
 
-type Row = HashMap<String, String>;
+pub(crate) type Row = HashMap<String, String>;
 
 fn number(row: &Row, key: &str) -> f64 {
     row[key].parse().unwrap_or_else(|_| panic!("{key}: {}", row[key]))
@@ -28,7 +28,7 @@ fn abc(row: &Row) -> Box<dyn Brdf> {
     )
 }
 
-fn sgd(row: &Row) -> Box<dyn Brdf> {
+pub(crate) fn sgd(row: &Row) -> Box<dyn Brdf> {
     let band = |c: &str| {
         let v = |key: &str| number(row, &format!("{key}_{c}"));
         Band {

@@ -5,9 +5,12 @@ mod common;
 
 mod extremes;
 mod fits;
+mod fitting;
 mod oracles;
 mod physics;
+mod ranking;
 mod sampling;
+mod strd;
 
 use photopic::brdf::Brdf;
 use photopic::brdf::description::{Bands, Material};

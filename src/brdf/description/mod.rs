@@ -16,9 +16,10 @@
 //! medium = "Au"
 //! ```
 //!
-//! [`Material::prepare`] turns it into a [`Brdf`] for the caller's bands.
+//! [`Material::prepare`] turns it into a [`Brdf`] for the caller's bands. A [`template::Template`] leaves parameters open for a fit.
 
 mod parse;
+pub mod template;
 pub mod toml;
 
 use std::fmt;
@@ -143,6 +144,8 @@ enum Raw {
     Word(String),
     Channels(Vec<f64>),
     Spectrum(Vec<[f64; 2]>),
+    /// Left open, perhaps with a start; only in a [`template::Template`].
+    Open(Option<f64>),
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -281,8 +284,8 @@ fn spectral(raw: &Raw, bands: Bands<'_>) -> Result<Vec<f64>, ErrorKind> {
             found: "a spectrum, and the material has channels".to_owned(),
             expected: "one value per channel",
         }),
-        (Raw::Word(word), _) => {
-            Err(ErrorKind::Syntax { found: format!("`{word}`"), expected: "a number or spectrum".to_owned() })
+        (Raw::Word(_) | Raw::Open(_), _) => {
+            Err(ErrorKind::Syntax { found: format!("`{raw}`"), expected: "a number or spectrum".to_owned() })
         }
     }
 }
@@ -294,6 +297,8 @@ impl fmt::Display for Raw {
             Self::Word(w) => f.write_str(w),
             Self::Channels(v) => write!(f, "{v:?}"),
             Self::Spectrum(v) => write!(f, "{v:?}"),
+            Self::Open(None) => f.write_str("?"),
+            Self::Open(Some(start)) => write!(f, "?{start}"),
         }
     }
 }
@@ -337,6 +342,14 @@ fn add(
     };
     if arguments.iter().any(|a| a.parameter.name == name) {
         return Err(Error { place: name_place, kind: ErrorKind::Twice { name: parameter.name } });
+    }
+    if let Raw::Open(start) = value {
+        let numeric = matches!(parameter.kind, Kind::Number | Kind::Spectral);
+        let found = format!("`{value}` for `{}`", parameter.name);
+        let kind = ErrorKind::Syntax { found, expected: parameter.expected() };
+        let checked = start.map_or(Ok(()), |s| parameter.check(s).map_err(ErrorKind::from));
+        let checked = if numeric { checked } else { Err(kind) };
+        checked.map_err(|kind| Error { place, kind })?;
     }
     arguments.push(Argument { parameter, value, place });
     Ok(())

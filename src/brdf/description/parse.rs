@@ -1,13 +1,22 @@
 //! The text form: `weight*model(name=value, …) + …`.
 
-use super::{Argument, Error, ErrorKind, Material, Part, Place, Raw, add, list, model};
+use super::{Error, ErrorKind, Material, Part, Place, Raw, add, list, model, template};
 
 /// Lists inside lists: a spectrum has two levels, more are nonsense.
 const DEEPEST: usize = 2;
 
 /// Reads a whole description.
 pub(super) fn material(text: &str) -> Result<Material, Error> {
-    let mut reader = Reader { rest: text, place: Place { line: 1, column: 1 } };
+    read(text, false)
+}
+
+/// Reads a description in which values may be open.
+pub(super) fn template(text: &str) -> Result<Material, Error> {
+    read(text, true)
+}
+
+fn read(text: &str, open: bool) -> Result<Material, Error> {
+    let mut reader = Reader { rest: text, place: Place { line: 1, column: 1 }, open };
     let mut parts = vec![reader.part()?];
     while reader.taken('+') {
         parts.push(reader.part()?);
@@ -21,6 +30,8 @@ pub(super) fn material(text: &str) -> Result<Material, Error> {
 struct Reader<'a> {
     rest: &'a str,
     place: Place,
+    /// Values may be `?`, and models stand without parentheses.
+    open: bool,
 }
 
 impl<'a> Reader<'a> {
@@ -96,7 +107,7 @@ impl<'a> Reader<'a> {
         let first = self.peek();
         let place = self.place;
         let weight = match first {
-            Some(c) if c.is_ascii_digit() || ".-[".contains(c) => {
+            Some(c) if c.is_ascii_digit() || ".-[".contains(c) || (self.open && c == '?') => {
                 let weight = self.value(0)?;
                 self.expect('*', "`*` between a weight and its model")?;
                 weight
@@ -110,10 +121,21 @@ impl<'a> Reader<'a> {
             return Err(self.unexpected("a model such as `lambert(reflectance=0.5)`"));
         }
         let model = model(name, model_place)?;
+        let mut part = Part { weight, model, arguments: Vec::new(), place };
+        let bare = self.open && self.peek() != Some('(');
+        if !bare {
+            self.arguments(&mut part)?;
+        }
+        if self.open {
+            template::complete(&mut part, bare);
+        }
+        Ok(part)
+    }
+
+    fn arguments(&mut self, part: &mut Part) -> Result<(), Error> {
         self.expect('(', "`(` and the model's parameters")?;
-        let mut arguments: Vec<Argument> = Vec::new();
         while !self.taken(')') {
-            if !arguments.is_empty() {
+            if !part.arguments.is_empty() {
                 self.expect(',', "`,` and another parameter, or `)`")?;
             }
             self.peek();
@@ -126,9 +148,9 @@ impl<'a> Reader<'a> {
             self.peek();
             let value_place = self.place;
             let value = self.value(0)?;
-            add(&mut arguments, model, name, name_place, (value, value_place))?;
+            add(&mut part.arguments, part.model, name, name_place, (value, value_place))?;
         }
-        Ok(Part { weight, model, arguments, place })
+        Ok(())
     }
 
     fn value(&mut self, depth: usize) -> Result<Raw, Error> {
@@ -153,6 +175,11 @@ impl<'a> Reader<'a> {
                 Ok(Raw::Word(word))
             }
             Some(c) if c.is_ascii_digit() || "+-.".contains(c) => Ok(Raw::Number(self.number()?)),
+            Some('?') if self.open && depth == 0 => {
+                self.advance(1);
+                let start = self.rest.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+                Ok(Raw::Open(if start { Some(self.number()?) } else { None }))
+            }
             Some(c) if c.is_alphabetic() => Ok(Raw::Word(self.word().to_owned())),
             _ => Err(self.unexpected("a number, a word or a list")),
         }

@@ -17,10 +17,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 
-use super::axis::{Place, check, locate};
+use super::axis::{self, Place, check, locate, zone};
 use super::marginal::{Marginal, cell};
-use super::{Channel, Error, Known};
-use crate::geometry::direction::{phi, theta};
+use super::{Channel, Entry, Error, Known};
+use crate::geometry::direction::{from_angles, phi, theta};
 
 /// The arrays of a file, as they stand in it: the last index runs fastest.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,6 +162,31 @@ impl Adaptive {
         }
         values.iter_mut().for_each(|v| *v *= scale / outgoing.z);
         if polar.outside || azimuth.outside { Known::Inferred } else { Known::Measured }
+    }
+
+    /// Visits places at the tabulated angles of incidence, on a net of normals with as many cells as the spectra have nodes.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        let [rows, columns] = self.fields.spectra_shape;
+        let azimuths = if self.is_isotropic() { &[0.0][..] } else { &self.fields.phi_i };
+        let thetas = &self.fields.theta_i;
+        let mut values = vec![0.0; self.fields.channels.len()];
+        // θ runs as the square of the net's coordinate.
+        let bound = |column: usize| (column as f64 / columns as f64).powi(2) * FRAC_PI_2;
+        for (i, phi_i) in (0..thetas.len()).flat_map(|i| azimuths.iter().map(move |p| (i, *p))) {
+            let incident = from_angles(thetas[i], phi_i);
+            let share = zone(axis::cell(thetas, i, 0.0, FRAC_PI_2));
+            for (row, column) in (0..rows).flat_map(|r| (0..columns).map(move |c| (r, c))) {
+                let theta_h = ((column as f64 + 0.5) / columns as f64).powi(2) * FRAC_PI_2;
+                let facet = from_angles(theta_h, (row as f64 + 0.5) / rows as f64 * TAU - PI + phi_i);
+                let cos = incident.dot(facet);
+                let outgoing = 2.0 * cos * facet - incident;
+                if cos > 0.0 && outgoing.z > 0.0 && self.value(incident, outgoing, &mut values) == Known::Measured {
+                    // dω_o = 4 (ω_i·h) dω_h.
+                    let measure = share * 4.0 * cos * zone([bound(column), bound(column + 1)]);
+                    visit(&Entry { incident, outgoing, measure, values: &values });
+                }
+            }
+        }
     }
 
     /// Both directions mirrored into the part of the circle that is tabulated.

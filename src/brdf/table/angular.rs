@@ -2,13 +2,13 @@
 //!
 //! Linear in θ_i, φ_i, θ_o and φ_o. Beyond the last θ the value of the last is taken, and is inferred.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
 
-use super::axis::{self, Place, check, locate_on_circle};
-use super::{Channel, Error, Known, blend};
-use crate::geometry::direction::{phi, theta};
+use super::axis::{self, Place, cell, check, locate_on_circle, zone};
+use super::{Channel, Entry, Error, Known, blend};
+use crate::geometry::direction::{from_angles, phi, theta};
 
 /// A table over (θ_i, φ_i, θ_o, φ_o).
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +55,21 @@ impl Angular {
         let places = [polar(incident), azimuth(incident), polar(outgoing), azimuth(outgoing)];
         let known = blend((0..16).map(|corner| self.node(&places, corner)), values);
         if places.iter().any(|p| p.outside) { known.max(Known::Inferred) } else { known }
+    }
+
+    /// Visits the nodes above the horizon that have values.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        let zones: Vec<f64> =
+            (0..self.thetas_rad.len()).map(|i| zone(cell(&self.thetas_rad, i, 0.0, FRAC_PI_2))).collect();
+        let (polar, around) = (self.thetas_rad.len(), self.azimuths);
+        let direction = |t: usize, p: usize| from_angles(self.thetas_rad[t], p as f64 / around as f64 * TAU);
+        for (index, values) in self.values.chunks_exact(self.channels.len()).enumerate() {
+            let (o, i) = (index % (polar * around), index / (polar * around));
+            let [incident, outgoing] = [i, o].map(|n| direction(n / around, n % around));
+            if incident.z > 0.0 && outgoing.z > 0.0 && values.iter().all(|v| !v.is_nan()) {
+                visit(&Entry { incident, outgoing, measure: zones[i / around] * zones[o / around], values });
+            }
+        }
     }
 
     /// Weight and values of one of the sixteen nodes around a place.

@@ -32,6 +32,24 @@ pub(super) fn check(axis: &'static str, nodes: &[f64]) -> Result<(), Error> {
     }
 }
 
+/// The part of `low` … `high` that is nearer to node `i` than to its neighbours; beyond the ends of the axis as far as towards
+/// the inside.
+pub(super) fn cell(nodes: &[f64], i: usize, low: f64, high: f64) -> [f64; 2] {
+    let last = nodes.len() - 1;
+    let half = |a: usize| 0.5 * (nodes[a + 1] - nodes[a]);
+    if last == 0 {
+        return [low, high];
+    }
+    let below = if i == 0 { half(0) } else { half(i - 1) };
+    let above = if i == last { half(last - 1) } else { half(i) };
+    [(nodes[i] - below).max(low), (nodes[i] + above).min(high)]
+}
+
+/// Share of the hemisphere between two angles to the normal, per radian of azimuth: cos a − cos b, without cancellation.
+pub(super) fn zone([a, b]: [f64; 2]) -> f64 {
+    2.0 * (0.5 * (a + b)).sin() * (0.5 * (b - a)).sin()
+}
+
 /// How far beyond the ends of an axis an angle may lie and still be at them: rounding, in radians or degrees.
 const SLACK: f64 = 1e-9;
 

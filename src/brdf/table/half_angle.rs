@@ -20,8 +20,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
+use super::axis::zone;
 use super::borders::Borders;
-use super::{Channel, Error, Known};
+use super::{Channel, Entry, Error, Known};
 use crate::brdf::coordinates::HalfDiff;
 
 /// Pairs of directions whose arithmetic is done together.
@@ -207,6 +208,43 @@ impl HalfAngle {
         };
         values.iter_mut().zip(self.bin(found)).for_each(|(v, b)| *v = f64::from(*b));
         known
+    }
+
+    /// Visits the middles of the bins that have values and lie above the horizon. A bin's measure is the exact integral of
+    /// dω_i dω_o = 4 cosθ_d dω_h dω_d over it.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        let r = self.resolution;
+        let square = |i: f64| (i / r.theta_h as f64).powi(2) * FRAC_PI_2;
+        let half: Vec<(f64, f64, f64)> = (0..r.theta_h)
+            .map(|h| {
+                let (sin, cos) = square(h as f64 + 0.5).sin_cos();
+                (sin, cos, zone([square(h as f64), square(h as f64 + 1.0)]))
+            })
+            .collect();
+        let border = |d: usize| d as f64 / r.theta_d as f64 * FRAC_PI_2;
+        let difference: Vec<(f64, f64, f64)> = (0..r.theta_d)
+            .map(|d| {
+                let (sin, cos) = (0.5 * (border(d) + border(d + 1))).sin_cos();
+                (sin, cos, 2.0 * (border(d + 1).sin().powi(2) - border(d).sin().powi(2)))
+            })
+            .collect();
+        let azimuth: Vec<(f64, f64)> =
+            (0..r.phi_d).map(|p| ((p as f64 + 0.5) / r.phi_d as f64 * PI).sin_cos()).collect();
+        let mut values = vec![0.0; self.channels.len()];
+        for (bin, stored) in self.values.chunks_exact(self.channels.len()).enumerate() {
+            if stored[0].is_nan() {
+                continue;
+            }
+            let [h, d, p] = r.unflatten(bin);
+            let ((sin_h, cos_h, zone_h), (sin_d, cos_d, zone_d), (sin_p, cos_p)) = (half[h], difference[d], azimuth[p]);
+            let (x, y) = (sin_d * cos_p, sin_d * sin_p);
+            let incident = DVec3::new(cos_h * x + sin_h * cos_d, y, cos_h * cos_d - sin_h * x);
+            let outgoing = DVec3::new(sin_h * cos_d - cos_h * x, -y, cos_h * cos_d + sin_h * x);
+            if incident.z > 0.0 && outgoing.z > 0.0 {
+                values.iter_mut().zip(stored).for_each(|(v, s)| *v = f64::from(*s));
+                visit(&Entry { incident, outgoing, measure: zone_h * zone_d, values: &values });
+            }
+        }
     }
 
     fn measured_beside(&self, bin: usize) -> Option<usize> {

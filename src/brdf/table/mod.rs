@@ -45,6 +45,20 @@ pub enum Known {
     Missing,
 }
 
+/// A place of a table at which there is a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry<'a> {
+    /// ω_i.
+    pub incident: DVec3,
+    /// ω_o.
+    pub outgoing: DVec3,
+    /// How much of both hemispheres the place stands for, in sr² up to a factor that all places of a table share; 1 for each of
+    /// scattered points, whose shares nobody knows.
+    pub measure: f64,
+    /// In 1/sr, one per channel, none missing.
+    pub values: &'a [f64],
+}
+
 /// What one value of a place belongs to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Channel {
@@ -167,6 +181,20 @@ impl Table {
             Self::Patches(t) => t.value(incident, outgoing, values),
             Self::Points(t) => t.value(incident, outgoing, values),
             Self::Adaptive(t) => t.value(incident, outgoing, values),
+        }
+    }
+
+    /// Visits the places at which there is a value and both directions are above the horizon, in the table's order: the middles of
+    /// bins and patches, nodes, points. A table in the adaptive parameterisation has its places where its file's interpolation
+    /// puts them; it is read at its own angles of incidence on a net of normals as fine as its spectra.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        match self {
+            Self::HalfAngle(t) => t.entries(visit),
+            Self::Angular(t) => t.entries(visit),
+            Self::Specular(t) => t.entries(visit),
+            Self::Patches(t) => t.entries(visit),
+            Self::Points(t) => t.entries(visit),
+            Self::Adaptive(t) => t.entries(visit),
         }
     }
 

@@ -10,8 +10,9 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::{Channel, Error, Known};
-use crate::geometry::direction::{phi, theta};
+use super::axis::zone;
+use super::{Channel, Entry, Error, Known};
+use crate::geometry::direction::{from_angles, phi, theta};
 
 /// A ring of equal patches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,6 +115,28 @@ impl Patches {
             _ => {
                 values.fill(f64::NAN);
                 Known::Missing
+            }
+        }
+    }
+
+    /// Visits the pairs of patches that have values, at the patches' middles.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        // Angles and solid angle of each patch, azimuths as the file counts them.
+        let middles: Vec<(f64, f64, f64)> = (self.rings.iter())
+            .flat_map(|ring| {
+                let bounds = [ring.lower_deg, ring.upper_deg].map(f64::to_radians);
+                // A cap is about the normal.
+                let theta =
+                    if ring.lower_deg <= 0.0 && ring.sectors == 1 { 0.0 } else { 0.5 * (bounds[0] + bounds[1]) };
+                let turn = TAU / ring.sectors as f64;
+                (0..ring.sectors).map(move |k| (theta, k as f64 * turn, zone(bounds) * turn))
+            })
+            .collect();
+        for (index, values) in self.values.chunks_exact(self.channels.len()).enumerate() {
+            let (o, i) = (middles[index / middles.len()], middles[index % middles.len()]);
+            let (incident, outgoing) = (from_angles(i.0, i.1 - PI), from_angles(o.0, o.1));
+            if values.iter().all(|v| !v.is_nan()) {
+                visit(&Entry { incident, outgoing, measure: i.2 * o.2, values });
             }
         }
     }

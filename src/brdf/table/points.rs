@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::kd_tree::{KdTree, Key};
-use super::{Channel, Error, Known};
+use super::{Channel, Entry, Error, Known};
 use crate::brdf::coordinates::{HalfDiff, Parameterisation};
 
 /// What is nearer is the same place: rounding of angles that were written with ten digits.
@@ -101,6 +101,13 @@ impl Points {
     pub fn iter(&self) -> impl Iterator<Item = (DVec3, DVec3, &[f64])> {
         let values = self.values.chunks_exact(self.channels.len());
         self.directions.iter().zip(values).map(|(&(i, o), v)| (i, o, v))
+    }
+
+    /// Visits the points above the horizon.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        for (incident, outgoing, values) in self.iter().filter(|(i, o, _)| i.z > 0.0 && o.z > 0.0) {
+            visit(&Entry { incident, outgoing, measure: 1.0, values });
+        }
     }
 
     /// Writes the value at two directions.

@@ -14,8 +14,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 
-use super::axis::{Place, check, locate};
-use super::{Channel, Error, Known, blend};
+use super::axis::{Place, cell, check, locate, zone};
+use super::{Channel, Entry, Error, Known, blend};
 use crate::geometry::direction::{phi, theta};
 
 /// A table over (rotation, θ_i, α, β).
@@ -130,6 +130,34 @@ impl Specular {
             known = blend((0..16).map(|corner| self.node(&places, corner)), values);
         }
         if places.iter().any(|p| p.outside) { known.max(Known::Inferred) } else { known }
+    }
+
+    /// Visits the nodes above the horizon that have values.
+    pub fn entries(&self, visit: &mut dyn FnMut(&Entry<'_>)) {
+        let [incidences, azimuths, radials] =
+            [self.incidences_deg.len(), self.azimuths_deg.len(), self.radials_deg.len()];
+        let around = if self.azimuths_deg[azimuths - 1] <= 180.0 { 180.0 } else { 360.0 };
+        let zone_of = |nodes: &[f64], i: usize, high: f64| zone(cell(nodes, i, 0.0, high).map(f64::to_radians));
+        for (index, values) in self.values.chunks_exact(self.channels.len()).enumerate() {
+            let (radial, azimuth) = (index % radials, index / radials % azimuths);
+            let (incidence, rotation) =
+                (index / (radials * azimuths) % incidences, index / (radials * azimuths * incidences));
+            let (sin_i, cos_i) = self.incidences_deg[incidence].to_radians().sin_cos();
+            let (sin_r, cos_r) = self.rotations_deg[rotation].to_radians().sin_cos();
+            let incident = DVec3::new(sin_i * cos_r, sin_i * sin_r, cos_i);
+            let mirror = DVec3::new(-incident.x, -incident.y, incident.z);
+            let towards = DVec3::new(cos_i * cos_r, cos_i * sin_r, sin_i);
+            let (sin_a, cos_a) = self.azimuths_deg[azimuth].to_radians().sin_cos();
+            let (sin_b, cos_b) = self.radials_deg[radial].to_radians().sin_cos();
+            let outgoing = sin_b * (cos_a * towards + sin_a * mirror.cross(towards)) + cos_b * mirror;
+            if incident.z > 0.0 && outgoing.z > 0.0 && values.iter().all(|v| !v.is_nan()) {
+                let [first, last] = cell(&self.azimuths_deg, azimuth, 0.0, around);
+                let measure = zone_of(&self.incidences_deg, incidence, 90.0)
+                    * zone_of(&self.radials_deg, radial, 180.0)
+                    * (last - first);
+                visit(&Entry { incident, outgoing, measure, values });
+            }
+        }
     }
 
     /// Share of the weight around a place that nodes with data have.

@@ -3,6 +3,7 @@
 mod check;
 mod compress;
 mod eval;
+mod fit;
 mod load;
 mod plot;
 
@@ -19,6 +20,8 @@ pub(super) enum BrdfCommand {
     Check(check::CheckArgs),
     /// Values at lists of directions.
     Eval(eval::EvalArgs),
+    /// Models fitted to measured tables, with standard errors, and compared.
+    Fit(fit::FitArgs),
     /// Lobes, albedo and a lit sphere as SVG or PNG.
     Plot(plot::PlotArgs),
     /// Compact forms of measured materials: principal components, and whole tables from a few measured directions.
@@ -31,6 +34,7 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Info(a) => check::info(&a, talk),
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
+        BrdfCommand::Fit(a) => fit::fit(&a, talk),
         BrdfCommand::Plot(a) => plot::plot(&a),
         BrdfCommand::Compress(command) => compress::run(command, talk),
     }
