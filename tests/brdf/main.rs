@@ -8,6 +8,7 @@ mod fits;
 mod oracles;
 mod physics;
 mod sampling;
+mod tables;
 
 use photopic::brdf::Brdf;
 use photopic::brdf::description::{Bands, Material};

@@ -15,11 +15,13 @@
 mod adaptive;
 mod angular;
 mod axis;
+mod brdf;
 mod half_angle;
 mod kd_tree;
 mod marginal;
 mod patches;
 mod points;
+mod sampled;
 pub mod specular;
 
 use std::fmt;
@@ -31,6 +33,7 @@ pub use angular::Angular;
 pub use half_angle::{HalfAngle, Resolution};
 pub use patches::{Patches, Ring, Side};
 pub use points::Points;
+pub use sampled::SampledTable;
 pub use specular::Specular;
 
 /// How the value of a place is known.
@@ -120,6 +123,42 @@ pub enum Table {
     Points(Points),
     /// A parameterisation adapted to the material.
     Adaptive(Adaptive),
+}
+
+impl From<HalfAngle> for Table {
+    fn from(table: HalfAngle) -> Self {
+        Self::HalfAngle(table)
+    }
+}
+
+impl From<Angular> for Table {
+    fn from(table: Angular) -> Self {
+        Self::Angular(table)
+    }
+}
+
+impl From<Specular> for Table {
+    fn from(table: Specular) -> Self {
+        Self::Specular(table)
+    }
+}
+
+impl From<Patches> for Table {
+    fn from(table: Patches) -> Self {
+        Self::Patches(table)
+    }
+}
+
+impl From<Points> for Table {
+    fn from(table: Points) -> Self {
+        Self::Points(table)
+    }
+}
+
+impl From<Adaptive> for Table {
+    fn from(table: Adaptive) -> Self {
+        Self::Adaptive(table)
+    }
 }
 
 impl Table {

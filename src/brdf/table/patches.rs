@@ -141,4 +141,15 @@ impl Patches {
         }
         sums
     }
+
+    /// Writes the same for a direction; false, and nothing written, where none of the patches holds it or values are missing.
+    pub(super) fn directional(&self, incident: DVec3, reflectance: &mut [f64]) -> bool {
+        let Some(patch) = self.patch(incident, PI).filter(|_| incident.z > 0.0) else { return false };
+        let sums = self.reflectance(patch);
+        if sums.iter().any(|s| s.is_nan()) {
+            return false;
+        }
+        reflectance.copy_from_slice(&sums);
+        true
+    }
 }
