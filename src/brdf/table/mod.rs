@@ -16,9 +16,11 @@ mod adaptive;
 mod angular;
 mod axis;
 mod brdf;
+mod channels;
 mod half_angle;
 mod kd_tree;
 mod marginal;
+mod nodes;
 mod patches;
 mod points;
 mod sampled;
@@ -31,6 +33,7 @@ use glam::DVec3;
 pub use adaptive::{Adaptive, Fields as AdaptiveFields};
 pub use angular::Angular;
 pub use half_angle::{HalfAngle, Resolution};
+pub use nodes::Axis;
 pub use patches::{Patches, Ring, Side};
 pub use points::Points;
 pub use sampled::SampledTable;
@@ -94,6 +97,24 @@ pub enum Error {
         axis: &'static str,
         /// The first that is not larger, from 1.
         at: usize,
+    },
+    /// A channel that is not there.
+    #[error("found {found} asked for; expected channels of the table: {expected}")]
+    Channel {
+        /// What was asked for.
+        found: String,
+        /// The channels that there are.
+        expected: String,
+    },
+    /// A wavelength outside of those of the table.
+    #[error("found {found} nm asked for; expected {low} to {high} nm, the wavelengths of the table")]
+    Wavelength {
+        /// What was asked for.
+        found: f64,
+        /// The shortest.
+        low: f64,
+        /// The longest.
+        high: f64,
     },
     /// A number that is not finite, or out of its range.
     #[error("found {value} for {what}; expected {expected}")]

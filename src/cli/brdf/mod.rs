@@ -27,6 +27,6 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Info(a) => check::info(&a, talk),
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
-        BrdfCommand::Plot(a) => plot::plot(&a),
+        BrdfCommand::Plot(a) => plot::plot(&a, talk),
     }
 }
