@@ -1,7 +1,8 @@
 //! Whether a BRDF is one: reciprocity, energy, sign, symmetry and coverage, with the place of the worst case.
 //!
 //! - **Reciprocity** (Helmholtz): |f(ω_i, ω_o) − f(ω_o, ω_i)| over the larger of the two, the largest over the net and all bands.
-//!   Values below a millionth of the largest are left out: their relative difference is rounding.
+//!   Values below a millionth of the largest are left out: their relative difference is rounding. In a table those below a
+//!   hundredth are, for theirs is noise, and so are places of which one was not measured: a guess says nothing about the material.
 //! - **Energy**: ρ(ω_i; 2π) ≤ 1 at every angle of [`ALBEDO_DEG`]; a material passes while ρ minus its quadrature's error does.
 //! - **Sign**: the part of the net where some band is negative.
 //! - **φ symmetry**: |f(φ) − f(−φ)| relative, mirrored at the plane of incidence. An anisotropic material may lack it when it is
@@ -31,6 +32,14 @@ pub struct Limits {
     pub albedo: f64,
     /// Largest part of the net with negative values.
     pub negative: f64,
+}
+
+impl Limits {
+    /// Those of a model, or of a table: exchanged directions of a measurement differ by its noise.
+    #[must_use]
+    pub fn of(brdf: &dyn Brdf) -> Self {
+        if brdf.is_tabulated() { Self { reciprocity: 0.1, ..Self::default() } } else { Self::default() }
+    }
 }
 
 impl Default for Limits {
@@ -89,7 +98,8 @@ pub struct Albedo {
 /// What an audit found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Audit {
-    /// Largest relative difference of exchanged directions; `None` where there is nothing but Dirac lobes.
+    /// Largest relative difference of exchanged directions; `None` where there is nothing but Dirac lobes, or no pair of
+    /// directions was measured both ways.
     pub reciprocity: Option<Worst>,
     /// Albedo at [`ALBEDO_DEG`]; for anisotropic materials at five azimuths.
     pub albedo: Vec<Albedo>,
@@ -200,14 +210,16 @@ impl<'a> Net<'a> {
                 self.brdf.evaluate(i, o, &mut here);
                 largest = here.iter().fold(largest, |m, v| m.max(v.abs()));
             }
-            1e-6 * largest.max(f64::MIN_POSITIVE)
+            let share = if self.brdf.is_tabulated() { 1e-2 } else { 1e-6 };
+            share * largest.max(f64::MIN_POSITIVE)
         };
         for g in geometries {
             let (i, o) = g.directions();
             self.brdf.evaluate(i, o, &mut here);
             self.points += 1;
             self.weight += i.z * o.z * g.theta_o_deg.to_radians().sin();
-            if self.brdf.is_measured(i, o) {
+            let measured = self.brdf.is_measured(i, o);
+            if measured {
                 self.measured += i.z * o.z * g.theta_o_deg.to_radians().sin();
             }
             if let Some((band, value)) = least(&here) {
@@ -216,13 +228,15 @@ impl<'a> Net<'a> {
                     self.most_negative = Some(Worst { value, at: g, band });
                 }
             }
-            if floor == f64::INFINITY {
+            if floor == f64::INFINITY || !measured {
                 continue;
             }
-            self.brdf.evaluate(o, i, &mut back);
-            keep_largest(&mut self.reciprocity, &here, &back, floor, g);
-            if phi_i_deg == 0.0 {
-                let mirrored = Geometry { phi_deg: -g.phi_deg, ..g }.directions();
+            if self.brdf.is_measured(o, i) {
+                self.brdf.evaluate(o, i, &mut back);
+                keep_largest(&mut self.reciprocity, &here, &back, floor, g);
+            }
+            let mirrored = Geometry { phi_deg: -g.phi_deg, ..g }.directions();
+            if phi_i_deg == 0.0 && self.brdf.is_measured(mirrored.0, mirrored.1) {
                 self.brdf.evaluate(mirrored.0, mirrored.1, &mut other);
                 keep_largest(&mut self.symmetry, &here, &other, floor, g);
             }

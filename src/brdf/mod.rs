@@ -22,6 +22,7 @@
 //! | [`microfacet`] | Torrance-Sparrow with GGX, Beckmann and Blinn facets |
 //! | [`abc`], [`sgd`] | microfacets fitted to measured materials |
 //! | [`sum`] | sums and mixtures |
+//! | [`table`], [`format`](mod@format), [`coordinates`] | measured tables, their files, their coordinates |
 //! | [`medium`] | refractive indices of a few substances |
 //! | [`description`] | materials in words, for the command line, files and scenes |
 //! | [`audit`] | reciprocity, energy, sign, symmetry, coverage |
@@ -90,6 +91,11 @@ pub trait Brdf: fmt::Debug + Send + Sync {
 
     /// Whether all of the light leaves in Dirac lobes: [`Brdf::evaluate`] is zero everywhere.
     fn is_delta(&self) -> bool {
+        false
+    }
+
+    /// Whether the values bend or jump between nodes, as those of tables do: quadratures, which converge slowly then, stop at 1e-4.
+    fn is_tabulated(&self) -> bool {
         false
     }
 

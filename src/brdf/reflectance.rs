@@ -23,12 +23,35 @@ use super::Brdf;
 use crate::geometry::direction::{mirror, tangents};
 use crate::math::cubature::{Tolerance, rectangle};
 
-/// What one integral over directions aims at.
-const FINE: Tolerance = Tolerance { absolute: 1e-9, relative: 1e-7, evaluations: 200_000 };
-/// What the inner one of a double integral aims at.
-const INNER: Tolerance = Tolerance { absolute: 1e-7, relative: 1e-5, evaluations: 20_000 };
-/// What the outer one of a double integral aims at.
-const OUTER: Tolerance = Tolerance { absolute: 1e-6, relative: 1e-4, evaluations: 1_500 };
+/// What the quadratures aim at.
+#[derive(Debug, Clone, Copy)]
+struct Aims {
+    /// One integral over directions.
+    fine: Tolerance,
+    /// The inner one of a double integral.
+    inner: Tolerance,
+    /// The outer one.
+    outer: Tolerance,
+}
+
+impl Aims {
+    const SMOOTH: Self = Self {
+        fine: Tolerance { absolute: 1e-9, relative: 1e-7, evaluations: 200_000 },
+        inner: Tolerance { absolute: 1e-7, relative: 1e-5, evaluations: 20_000 },
+        outer: Tolerance { absolute: 1e-6, relative: 1e-4, evaluations: 1_500 },
+    };
+    /// Of tables, which bend or jump between their nodes and are known to some per cent.
+    const TABLE: Self = Self {
+        fine: Tolerance { absolute: 1e-6, relative: 1e-4, evaluations: 20_000 },
+        inner: Tolerance { absolute: 1e-5, relative: 1e-3, evaluations: 2_000 },
+        outer: Tolerance { absolute: 1e-4, relative: 1e-3, evaluations: 400 },
+    };
+
+    fn of<B: Brdf + ?Sized>(brdf: &B) -> Self {
+        if brdf.is_tabulated() { Self::TABLE } else { Self::SMOOTH }
+    }
+}
+
 /// Span of the logarithmic radius: e²⁰·⁷ = 1e9.
 const SPAN: f64 = 20.723_265_836_946_41;
 
@@ -58,7 +81,7 @@ impl Cone {
             return if *self == Self::HEMISPHERE { PI } else { PI * self.half_angle_rad.sin().powi(2) * self.axis.z };
         }
         let mut out = [0.0];
-        over_cone(self.axis, self, FINE, 1.0, &mut |direction, v| v[0] = direction.z, &mut out);
+        over_cone(self.axis, self, Aims::SMOOTH.fine, 1.0, &mut |direction, v| v[0] = direction.z, &mut out);
         out[0]
     }
 }
@@ -92,6 +115,7 @@ pub struct Reflectance {
 /// between them.
 #[must_use]
 pub fn between<B: Brdf + ?Sized>(brdf: &B, incident: Beam, outgoing: Beam) -> Option<Reflectance> {
+    let aims = Aims::of(brdf);
     let mut rho = vec![0.0; brdf.bands()];
     let (error, per_factor) = match (incident, outgoing) {
         (Beam::Directional(i), Beam::Directional(o)) => {
@@ -111,7 +135,7 @@ pub fn between<B: Brdf + ?Sized>(brdf: &B, incident: Beam, outgoing: Beam) -> Op
                 brdf.evaluate(direction, o, v);
                 v.iter_mut().for_each(|v| *v *= direction.z);
             };
-            let mut error = over_cone(mirror(o), &cone, FINE, SPAN, &mut f, &mut rho);
+            let mut error = over_cone(mirror(o), &cone, aims.fine, SPAN, &mut f, &mut rho);
             if brdf.has_delta() && cone.contains(mirror(o)) {
                 add_specular(brdf, mirror(o), &mut rho);
             }
@@ -123,10 +147,10 @@ pub fn between<B: Brdf + ?Sized>(brdf: &B, incident: Beam, outgoing: Beam) -> Op
             let projected = from.projected_solid_angle();
             let mut inner = 0.0_f64;
             let mut f = |direction: DVec3, v: &mut [f64]| {
-                inner = inner.max(directional_to(brdf, direction, &to, INNER, v));
+                inner = inner.max(directional_to(brdf, direction, &to, aims.inner, v));
                 v.iter_mut().for_each(|v| *v *= direction.z);
             };
-            let outer = over_cone(from.axis, &from, OUTER, 1.0, &mut f, &mut rho);
+            let outer = over_cone(from.axis, &from, aims.outer, 1.0, &mut f, &mut rho);
             rho.iter_mut().for_each(|v| *v /= projected);
             (outer / projected + inner, to.projected_solid_angle() / PI)
         }
@@ -138,7 +162,7 @@ pub fn between<B: Brdf + ?Sized>(brdf: &B, incident: Beam, outgoing: Beam) -> Op
 /// Writes ρ(ω_i; Ω_o) = ∫ f_r cosθ_o dω_o over the part of a cone above the horizon, Dirac lobe included, per band; gives the
 /// bound on its absolute error. Zero for a direction at or below the horizon.
 pub fn directional<B: Brdf + ?Sized>(brdf: &B, incident: DVec3, cone: &Cone, reflectance: &mut [f64]) -> f64 {
-    directional_to(brdf, incident, cone, FINE, reflectance)
+    directional_to(brdf, incident, cone, Aims::of(brdf).fine, reflectance)
 }
 
 fn directional_to<B: Brdf + ?Sized>(

@@ -95,6 +95,10 @@ impl Brdf for Sum {
         self.parts.iter().all(|p| p.brdf.is_delta())
     }
 
+    fn is_tabulated(&self) -> bool {
+        self.parts.iter().any(|p| p.brdf.is_tabulated())
+    }
+
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, values: &mut [f64]) {
         self.add(values, |brdf, v| brdf.evaluate(incident, outgoing, v));
     }

@@ -11,6 +11,7 @@ mod physics;
 mod ranking;
 mod sampling;
 mod strd;
+mod tables;
 
 use photopic::brdf::Brdf;
 use photopic::brdf::description::{Bands, Material};

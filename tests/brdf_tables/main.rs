@@ -1,6 +1,7 @@
 //! Measured BRDFs: real files of `../shared/brdf`, files built from the published descriptions of formats, hostile ones, and
 //! compression on the set of fitted materials.
 
+mod brdf;
 #[path = "../common/mod.rs"]
 mod common;
 mod compress;

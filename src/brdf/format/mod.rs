@@ -68,6 +68,8 @@ pub struct File {
     pub format: Format,
     /// The table.
     pub table: Table,
+    /// TIS that a Zemax file prints, per angle of incidence (first channel, first rotation); none in other formats.
+    pub printed_tis: Vec<f64>,
 }
 
 /// Tells the format of an input; `None` where it is none of them.
@@ -115,17 +117,21 @@ pub fn open(bytes: &[u8], format: Option<Format>) -> Result<Checked<File>, Error
         return Err(Error::whole(ErrorKind::Empty));
     }
     let Some(format) = format.or_else(|| detect(bytes)) else { return Err(unknown(bytes)) };
+    let mut printed_tis = Vec::new();
     let read = match format {
         Format::Merl => merl::parse(bytes)?.map(Table::HalfAngle),
         Format::Rgl => rgl::parse(bytes)?.map(Table::Adaptive),
         Format::Utia => utia::parse(bytes)?.map(Table::Angular),
         Format::Astm => astm::parse(bytes)?.map(Table::Points),
-        Format::Zemax => zemax::parse(bytes)?.map(|z| Table::Specular(z.table)),
+        Format::Zemax => zemax::parse(bytes)?.map(|z| {
+            printed_tis.extend(z.printed.iter().take(z.table.incidences_deg().len()));
+            Table::Specular(z.table)
+        }),
         Format::Klems => reflection(klems::parse(bytes)?)?,
         Format::Alta => alta::parse(bytes)?.map(Table::Points),
         Format::Csv => csv::parse(bytes)?.map(Table::Points),
     };
-    Ok(read.map(|table| File { format, table }))
+    Ok(read.map(|table| File { format, table, printed_tis }))
 }
 
 /// The reflection matrix of an XML file.

@@ -7,6 +7,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::DVec3;
 
 use super::axis::{self, Place, cell, check, locate_on_circle, zone};
+use super::channels::Mix;
+use super::nodes::Axis;
 use super::{Channel, Entry, Error, Known, blend};
 use crate::geometry::direction::{from_angles, phi, theta};
 
@@ -83,5 +85,30 @@ impl Angular {
         }
         let n = self.channels.len();
         (weight, &self.values[index * n..][..n])
+    }
+
+    /// The same places with other channels.
+    pub(super) fn mixed(&self, mix: &Mix) -> Self {
+        Self { channels: mix.channels.clone(), values: mix.interleaved(&self.values), ..self.clone() }
+    }
+
+    pub(super) fn axes(&self) -> Vec<Axis> {
+        let thetas_deg: Vec<f64> = self.thetas_rad.iter().map(|t| t.to_degrees()).collect();
+        let last = 360.0 * (self.azimuths - 1) as f64 / self.azimuths as f64;
+        let polar = |name| Axis::of(name, &thetas_deg);
+        let azimuth = |name| Axis::new(name, self.azimuths, 0.0, last);
+        vec![polar("θ_i"), azimuth("φ_i"), polar("θ_o"), azimuth("φ_o")]
+    }
+
+    /// Calls `f` with the directions and values of every node.
+    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
+        let direction = |i: usize| {
+            let azimuth = (i % self.azimuths) as f64 * TAU / self.azimuths as f64;
+            from_angles(self.thetas_rad[i / self.azimuths], azimuth)
+        };
+        let side = self.thetas_rad.len() * self.azimuths;
+        for (index, node) in self.values.chunks_exact(self.channels.len()).enumerate() {
+            f(direction(index / side), direction(index % side), node);
+        }
     }
 }

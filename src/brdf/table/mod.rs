@@ -16,11 +16,15 @@ mod adaptive;
 mod angular;
 mod axis;
 mod borders;
+mod brdf;
+mod channels;
 mod half_angle;
 mod kd_tree;
 mod marginal;
+mod nodes;
 mod patches;
 mod points;
+mod sampled;
 pub mod specular;
 
 use std::fmt;
@@ -30,8 +34,10 @@ use glam::DVec3;
 pub use adaptive::{Adaptive, Fields as AdaptiveFields};
 pub use angular::Angular;
 pub use half_angle::{HalfAngle, Resolution};
+pub use nodes::Axis;
 pub use patches::{Patches, Ring, Side};
 pub use points::Points;
+pub use sampled::SampledTable;
 pub use specular::Specular;
 
 /// How the value of a place is known.
@@ -107,6 +113,24 @@ pub enum Error {
         /// The first that is not larger, from 1.
         at: usize,
     },
+    /// A channel that is not there.
+    #[error("found {found} asked for; expected channels of the table: {expected}")]
+    Channel {
+        /// What was asked for.
+        found: String,
+        /// The channels that there are.
+        expected: String,
+    },
+    /// A wavelength outside of those of the table.
+    #[error("found {found} nm asked for; expected {low} to {high} nm, the wavelengths of the table")]
+    Wavelength {
+        /// What was asked for.
+        found: f64,
+        /// The shortest.
+        low: f64,
+        /// The longest.
+        high: f64,
+    },
     /// A number that is not finite, or out of its range.
     #[error("found {value} for {what}; expected {expected}")]
     Range {
@@ -135,6 +159,42 @@ pub enum Table {
     Points(Points),
     /// A parameterisation adapted to the material.
     Adaptive(Adaptive),
+}
+
+impl From<HalfAngle> for Table {
+    fn from(table: HalfAngle) -> Self {
+        Self::HalfAngle(table)
+    }
+}
+
+impl From<Angular> for Table {
+    fn from(table: Angular) -> Self {
+        Self::Angular(table)
+    }
+}
+
+impl From<Specular> for Table {
+    fn from(table: Specular) -> Self {
+        Self::Specular(table)
+    }
+}
+
+impl From<Patches> for Table {
+    fn from(table: Patches) -> Self {
+        Self::Patches(table)
+    }
+}
+
+impl From<Points> for Table {
+    fn from(table: Points) -> Self {
+        Self::Points(table)
+    }
+}
+
+impl From<Adaptive> for Table {
+    fn from(table: Adaptive) -> Self {
+        Self::Adaptive(table)
+    }
 }
 
 impl Table {

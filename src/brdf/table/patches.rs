@@ -11,8 +11,10 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::axis::zone;
+use super::channels::Mix;
+use super::nodes::Axis;
 use super::{Channel, Entry, Error, Known};
-use crate::geometry::direction::{from_angles, phi, theta};
+use crate::geometry::direction::{from_angles, from_degrees, phi, theta};
 
 /// A ring of equal patches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,5 +165,41 @@ impl Patches {
             }
         }
         sums
+    }
+
+    /// Writes the same for a direction; false, and nothing written, where none of the patches holds it or values are missing.
+    pub(super) fn directional(&self, incident: DVec3, reflectance: &mut [f64]) -> bool {
+        let Some(patch) = self.patch(incident, PI).filter(|_| incident.z > 0.0) else { return false };
+        let sums = self.reflectance(patch);
+        if sums.iter().any(|s| s.is_nan()) {
+            return false;
+        }
+        reflectance.copy_from_slice(&sums);
+        true
+    }
+
+    /// The same places with other channels.
+    pub(super) fn mixed(&self, mix: &Mix) -> Self {
+        Self { channels: mix.channels.clone(), values: mix.interleaved(&self.values), ..self.clone() }
+    }
+
+    pub(super) fn axes(&self) -> Vec<Axis> {
+        let patches = self.starts[self.rings.len()];
+        let last = self.rings.last().map_or(0.0, |r| r.upper_deg);
+        ["incident patch", "outgoing patch"].map(|name| Axis::new(name, patches, 0.0, last)).to_vec()
+    }
+
+    /// Calls `f` with the middles of every pair of patches and the values.
+    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
+        let mut middles = Vec::new();
+        for ring in &self.rings {
+            // A cap is seen from its pole.
+            let theta = if ring.sectors == 1 { ring.lower_deg } else { 0.5 * (ring.lower_deg + ring.upper_deg) };
+            middles.extend((0..ring.sectors).map(|s| from_degrees(theta, 360.0 * s as f64 / ring.sectors as f64)));
+        }
+        for (index, element) in self.values.chunks_exact(self.channels.len()).enumerate() {
+            let incident = middles[index % middles.len()];
+            f(DVec3::new(-incident.x, -incident.y, incident.z), middles[index / middles.len()], element);
+        }
     }
 }

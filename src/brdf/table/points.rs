@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use super::channels::Mix;
 use super::kd_tree::{KdTree, Key};
 use super::{Channel, Entry, Error, Known};
 use crate::brdf::coordinates::{HalfDiff, Parameterisation};
@@ -133,6 +134,11 @@ impl Points {
 
     fn key(&self, incident: DVec3, outgoing: DVec3) -> Key {
         key(self.parameterisation, self.mirrored, incident, outgoing)
+    }
+
+    /// The same places with other channels.
+    pub(super) fn mixed(&self, mix: &Mix) -> Self {
+        Self { channels: mix.channels.clone(), values: mix.interleaved(&self.values), ..self.clone() }
     }
 }
 

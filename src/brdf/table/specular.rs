@@ -15,8 +15,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 
 use super::axis::{Place, cell, check, locate, zone};
+use super::channels::Mix;
+use super::nodes::Axis;
 use super::{Channel, Entry, Error, Known, blend};
-use crate::geometry::direction::{phi, theta};
+use crate::geometry::direction::{from_degrees, phi, theta};
 
 /// A table over (rotation, θ_i, α, β).
 #[derive(Debug, Clone, PartialEq)]
@@ -171,10 +173,7 @@ impl Specular {
     fn places(&self, incident: DVec3, outgoing: DVec3) -> [Place; 4] {
         // The frame of the mirror direction; along the normal the incident azimuth decides what α = 0 is.
         let azimuth = phi(incident);
-        let (sin, cos) = azimuth.sin_cos();
-        let mirror = DVec3::new(-incident.x, -incident.y, incident.z);
-        let towards = DVec3::new(incident.z * cos, incident.z * sin, incident.x.hypot(incident.y));
-        let across = mirror.cross(towards);
+        let [mirror, towards, across] = mirror_frame(incident, azimuth);
         let (x, y, z) = (outgoing.dot(towards), outgoing.dot(across), outgoing.dot(mirror));
         let (radial, mut alpha) = (x.hypot(y).atan2(z).to_degrees(), y.atan2(x).to_degrees());
         if self.azimuths_deg[self.azimuths_deg.len() - 1] <= 180.0 {
@@ -215,9 +214,7 @@ impl Specular {
         let (sin_i, cos_i) = incidence_deg.to_radians().sin_cos();
         let rotation = self.rotations_deg[0].to_radians();
         let incident = DVec3::new(sin_i * rotation.cos(), sin_i * rotation.sin(), cos_i);
-        let mirror = DVec3::new(-incident.x, -incident.y, incident.z);
-        let towards = DVec3::new(cos_i * rotation.cos(), cos_i * rotation.sin(), sin_i);
-        let across = mirror.cross(towards);
+        let [mirror, towards, across] = mirror_frame(incident, rotation);
         let last = match rim {
             Rim::Cut => self.radials_deg[self.radials_deg.len() - 1].to_radians(),
             Rim::Extrapolated | Rim::Filled => FRAC_PI_2 + incidence_deg.to_radians(),
@@ -243,6 +240,48 @@ impl Specular {
         }
         sums
     }
+
+    /// The same places with other channels.
+    pub(super) fn mixed(&self, mix: &Mix) -> Self {
+        Self { channels: mix.channels.clone(), values: mix.interleaved(&self.values), ..self.clone() }
+    }
+
+    pub(super) fn axes(&self) -> Vec<Axis> {
+        vec![
+            Axis::of("rotation", &self.rotations_deg),
+            Axis::of("θ_i", &self.incidences_deg),
+            Axis::of("α", &self.azimuths_deg),
+            Axis::of("β", &self.radials_deg),
+        ]
+    }
+
+    /// Calls `f` with the directions and values of every node.
+    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
+        let mut nodes = self.values.chunks_exact(self.channels.len());
+        for (rotation, incidence) in
+            self.rotations_deg.iter().flat_map(|r| self.incidences_deg.iter().map(move |i| (*r, *i)))
+        {
+            let incident = from_degrees(incidence, rotation);
+            let [mirror, towards, across] = mirror_frame(incident, rotation.to_radians());
+            for (azimuth, radial) in
+                self.azimuths_deg.iter().flat_map(|a| self.radials_deg.iter().map(move |r| (*a, *r)))
+            {
+                let about = from_degrees(radial, azimuth);
+                let outgoing = towards * about.x + across * about.y + mirror * about.z;
+                if let Some(node) = nodes.next() {
+                    f(incident, outgoing, node);
+                }
+            }
+        }
+    }
+}
+
+/// The mirror direction, the direction from it towards the normal, and the one across.
+fn mirror_frame(incident: DVec3, azimuth: f64) -> [DVec3; 3] {
+    let (sin, cos) = azimuth.sin_cos();
+    let mirror = DVec3::new(-incident.x, -incident.y, incident.z);
+    let towards = DVec3::new(incident.z * cos, incident.z * sin, incident.x.hypot(incident.y));
+    [mirror, towards, mirror.cross(towards)]
 }
 
 /// Cosine of the angle to the normal (80°) beyond which a zero is taken for a place that the instrument could not see.

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::load::{MaterialArgs, load, prepare};
+use super::load::{MaterialArgs, Subject, load, prepare};
+use crate::brdf::Brdf;
 use crate::brdf::audit::{Limits, audit};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
@@ -23,9 +24,9 @@ const WAVELENGTHS_NM: [f64; 7] = [400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.
 pub(in crate::cli) struct CheckArgs {
     #[command(flatten)]
     materials: MaterialArgs,
-    /// Largest relative difference of exchanged directions that passes.
-    #[arg(long, value_name = "X", default_value_t = Limits::default().reciprocity)]
-    reciprocity: f64,
+    /// Largest relative difference of exchanged directions that passes: 1e-6 for models, 0.1 for measured tables.
+    #[arg(long, value_name = "X")]
+    reciprocity: Option<f64>,
     /// Largest albedo that passes.
     #[arg(long, value_name = "X", default_value_t = Limits::default().albedo)]
     albedo: f64,
@@ -77,14 +78,21 @@ impl Run<'_> {
         &mut self,
         mut f: impl FnMut(&str, &str, &report::Prepared<'_>, &mut Envelope<Vec<u8>>) -> Result<Vec<Finding>, Failure>,
     ) -> Result<(), Failure> {
-        let wavelengths = self.materials.wavelength.as_ref().map_or(self.default_nm, |n| &n.0);
+        let wanted = &self.materials.bands;
         for argument in &self.materials.materials {
-            let loaded = load(argument);
+            let loaded = load(argument, wanted.format.map(Into::into));
             self.envelope.input(loaded.input);
-            let prepared = loaded.material.and_then(|m| prepare(argument, &m, wavelengths).map(|p| (m, p)));
+            let prepared = (loaded.subject)
+                .and_then(|read| prepare(argument, &read.value, wanted, self.default_nm).map(|ready| (read, ready)));
             match prepared {
-                Ok((material, (bands, brdf))) => {
-                    let prepared = report::Prepared { material: &material, bands, brdf: brdf.as_ref() };
+                Ok((read, ready)) => {
+                    let source = match &read.value {
+                        Subject::Described(material) => report::Source::Described(material),
+                        Subject::Measured(file) => report::Source::Measured(file),
+                    };
+                    let prepared = report::Prepared { source, bands: &ready.bands, brdf: ready.brdf.as_ref() };
+                    self.notes.print(&read.findings);
+                    read.findings.into_iter().for_each(|f| self.envelope.finding(f));
                     let place = || Location::default().in_file(argument);
                     let found = f(argument, &loaded.name, &prepared, &mut self.envelope)?;
                     let found: Vec<Finding> = found.into_iter().map(|f| f.at(place())).collect();
@@ -105,9 +113,13 @@ impl Run<'_> {
 
 pub(super) fn check(arguments: &CheckArgs, talk: Talk) -> Result<(), Failure> {
     let paths = &arguments.materials.materials;
-    let limits = Limits { reciprocity: arguments.reciprocity, albedo: arguments.albedo, negative: arguments.negative };
+    let limits = |brdf: &dyn Brdf| {
+        let reciprocity = arguments.reciprocity.unwrap_or(Limits::of(brdf).reciprocity);
+        Limits { reciprocity, albedo: arguments.albedo, negative: arguments.negative }
+    };
     let mut sink = Sink::open(arguments.output.as_deref(), paths)?;
-    let settings = json!({"reciprocity": limits.reciprocity, "albedo": limits.albedo, "negative": limits.negative});
+    let settings =
+        json!({"reciprocity": arguments.reciprocity, "albedo": arguments.albedo, "negative": arguments.negative});
     let mut run = Run {
         materials: &arguments.materials,
         default_nm: &WAVELENGTHS_NM,
@@ -117,6 +129,7 @@ pub(super) fn check(arguments: &CheckArgs, talk: Talk) -> Result<(), Failure> {
     };
     let (mut plain, mut fails) = (String::new(), false);
     run.each(|path, name, prepared, envelope| {
+        let limits = limits(prepared.brdf);
         let audit = audit(prepared.brdf, &limits);
         fails |= !audit.passes;
         let findings = report::check_findings(prepared, &audit, &limits);
@@ -161,7 +174,7 @@ pub(super) fn info(arguments: &InfoArgs, talk: Talk) -> Result<(), Failure> {
     };
     let mut plain = String::new();
     run.each(|path, name, prepared, envelope| {
-        let audit = audit(prepared.brdf, &Limits::default());
+        let audit = audit(prepared.brdf, &Limits::of(prepared.brdf));
         let mut object = report::info(prepared, &audit, &nine);
         plain.push_str(&report::info_text(name, prepared, &object));
         object.insert("path".to_owned(), path.into());

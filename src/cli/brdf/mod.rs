@@ -35,7 +35,7 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
         BrdfCommand::Fit(a) => fit::fit(&a, talk),
-        BrdfCommand::Plot(a) => plot::plot(&a),
+        BrdfCommand::Plot(a) => plot::plot(&a, talk),
         BrdfCommand::Compress(command) => compress::run(command, talk),
     }
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::load::{MaterialArgs, Numbers, load, prepare};
-use crate::brdf::description::Bands;
-use crate::cli::Failure;
+use super::load::{BandArgs, MaterialArgs, Numbers, Ready, Subject, load, prepare};
+use crate::brdf::table::Channel;
+use crate::cli::notes::Notes;
 use crate::cli::output::write_file;
+use crate::cli::{Failure, Talk};
 use crate::plot::brdf::{Tint, albedo_panel, lobe_panel, log_panel, sphere_panel, surface_panel};
 use crate::plot::{Format, Panel, draw};
 
@@ -49,7 +50,7 @@ pub(in crate::cli) struct PlotArgs {
     output: PathBuf,
 }
 
-pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
+pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
     let format = format_of("-o", &arguments.output)?;
     let [path] = &arguments.materials.materials[..] else {
         let count = arguments.materials.materials.len();
@@ -60,15 +61,12 @@ pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
         let message = format!("--theta-i: expected 1 to {MOST_LOBES} angles from 0 to below 90 degrees");
         return Err(Failure::Message(message));
     }
-    let loaded = load(path);
-    let material = loaded.material.map_err(Failure::Message)?;
-    let default = [555.0];
-    let wavelengths = arguments.materials.wavelength.as_ref().map_or(&default[..], |n| &n.0);
-    let (bands, brdf) = prepare(path, &material, wavelengths).map_err(Failure::Message)?;
-    let names: Vec<String> = match bands {
-        Bands::Wavelengths(nm) => nm.iter().map(|w| format!("{w} nm")).collect(),
-        Bands::Channels(n) => (1..=n).map(|i| format!("channel {i}")).collect(),
-    };
+    let wanted = &arguments.materials.bands;
+    let loaded = load(path, wanted.format.map(Into::into));
+    let read = loaded.subject.map_err(Failure::Message)?;
+    Notes::new(&arguments.materials.materials, talk).print(&read.findings);
+    let Ready { bands, brdf } = prepare(path, &read.value, wanted, &[555.0]).map_err(Failure::Message)?;
+    let names: Vec<String> = bands.iter().map(ToString::to_string).collect();
     // Lobes are of one band: the middle one.
     let band = brdf.bands() / 2;
     let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", loaded.name, names[band]), thetas, band));
@@ -78,12 +76,12 @@ pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
         let (first, last, count) = SPHERE_NM;
         let step = (last - first) / f64::from(count - 1);
         let nm: Vec<f64> = (0..count).map(|i| first + step * f64::from(i)).collect();
-        let (bands, brdf) = prepare(path, &material, &nm).map_err(Failure::Message)?;
-        let tint = match bands {
-            Bands::Wavelengths(nm) => Tint::of_wavelengths(nm),
-            Bands::Channels(n) => Tint::of_channels(n),
+        let ready = match &read.value {
+            Subject::Described(_) => prepare(path, &read.value, &BandArgs::default(), &nm),
+            Subject::Measured(_) => prepare(path, &read.value, wanted, &nm),
         };
-        Ok(sphere_panel(brdf.as_ref(), &tint).into())
+        let Ready { bands, brdf } = ready.map_err(Failure::Message)?;
+        Ok(sphere_panel(brdf.as_ref(), &tint(&bands)).into())
     };
     let middle = thetas[thetas.len() / 2];
     let panels = match arguments.kind {
@@ -103,6 +101,15 @@ pub(super) fn plot(arguments: &PlotArgs) -> Result<(), Failure> {
     };
     let bytes = draw(&panels, None, format).map_err(|e| Failure::Message(e.to_string()))?;
     write_file(&arguments.output, &bytes, std::slice::from_ref(path))
+}
+
+/// Colours of bands: by the observer where all are wavelengths, else as channels.
+fn tint(bands: &[Channel]) -> Tint {
+    let wavelength = |c: &Channel| if let Channel::Wavelength(nm) = c { Some(*nm) } else { None };
+    match bands.iter().map(wavelength).collect::<Option<Vec<f64>>>() {
+        Some(nm) => Tint::of_wavelengths(&nm),
+        None => Tint::of_channels(bands.len()),
+    }
 }
 
 /// The format of a picture by its name; `option` is how the name was given.

@@ -1,13 +1,17 @@
 //! BRDFs as JSON and text: facts, audits, values.
 
+mod table;
+
 use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
 use crate::brdf::Brdf;
 use crate::brdf::audit::{Audit, Geometry, Limits, Worst};
-use crate::brdf::description::{Bands, Material};
+use crate::brdf::description::Material;
+use crate::brdf::format::File;
 use crate::brdf::reflectance::{Beam, Cone, between};
+use crate::brdf::table::Channel;
 use crate::finding::Finding;
 use crate::geometry::direction::from_degrees;
 use crate::units::significant;
@@ -15,13 +19,22 @@ use crate::units::significant;
 /// Digits shown for people; JSON has all.
 const DIGITS: usize = 6;
 
+/// What a material comes from.
+#[derive(Debug, Clone, Copy)]
+pub enum Source<'a> {
+    /// Words.
+    Described(&'a Material),
+    /// A measured table, as its file has it.
+    Measured(&'a File),
+}
+
 /// A material on its bands, to report on.
 #[derive(Debug, Clone, Copy)]
 pub struct Prepared<'a> {
-    /// What was described.
-    pub material: &'a Material,
+    /// What was described or measured.
+    pub source: Source<'a>,
     /// What it was prepared for.
-    pub bands: Bands<'a>,
+    pub bands: &'a [Channel],
     /// The result.
     pub brdf: &'a dyn Brdf,
 }
@@ -30,27 +43,37 @@ impl Prepared<'_> {
     /// Description and bands, which head every result.
     fn head(&self) -> Map<String, Value> {
         let mut out = Map::new();
-        out.insert("material".to_owned(), self.material.to_string().into());
-        match self.bands {
-            Bands::Wavelengths(nm) => out.insert("wavelengths_nm".to_owned(), nm.into()),
-            Bands::Channels(n) => out.insert("channels".to_owned(), n.into()),
+        match self.source {
+            Source::Described(material) => out.insert("material".to_owned(), material.to_string().into()),
+            Source::Measured(file) => out.insert("format".to_owned(), file.format.to_string().into()),
         };
+        let wavelength = |c: &Channel| if let Channel::Wavelength(nm) = c { Some(*nm) } else { None };
+        if let Some(nm) = self.bands.iter().map(wavelength).collect::<Option<Vec<f64>>>() {
+            out.insert("wavelengths_nm".to_owned(), nm.into());
+        } else {
+            out.insert("channels".to_owned(), self.bands.len().into());
+            if matches!(self.source, Source::Measured(_)) {
+                let names: Vec<String> = self.bands.iter().map(ToString::to_string).collect();
+                out.insert("channel_names".to_owned(), names.into());
+            }
+        }
         out
     }
 
-    /// `555 nm` or `channel 2`.
+    /// `555 nm`, `R` or `channel 2`.
     fn band(&self, i: usize) -> String {
-        match self.bands {
-            Bands::Wavelengths(nm) => format!("{} nm", nm[i]),
-            Bands::Channels(_) => format!("channel {}", i + 1),
-        }
+        self.bands[i].to_string()
+    }
+
+    fn band_names(&self) -> String {
+        self.bands.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
     }
 
     /// The band as it is marked in JSON and CSV: a wavelength, or a channel from 1.
     fn band_value(&self, i: usize) -> Value {
-        match self.bands {
-            Bands::Wavelengths(nm) => nm[i].into(),
-            Bands::Channels(_) => (i + 1).into(),
+        match self.bands[i] {
+            Channel::Wavelength(nm) => nm.into(),
+            Channel::Named(_) => (i + 1).into(),
         }
     }
 }
@@ -205,11 +228,16 @@ pub struct Nine {
 #[must_use]
 pub fn info(p: &Prepared<'_>, audit: &Audit, nine: &Nine) -> Map<String, Value> {
     let mut out = p.head();
-    let models = p.material.models().map(|m| {
-        let parameters = m.parameters.iter().map(|q| json!({"name": q.name, "expected": q.expected(), "unit": q.unit, "meaning": q.meaning, "default": q.default}));
-        json!({"model": m.name, "summary": m.summary, "parameters": parameters.collect::<Vec<_>>()})
-    });
-    out.insert("models".to_owned(), models.collect::<Vec<_>>().into());
+    match p.source {
+        Source::Described(material) => {
+            let models = material.models().map(|m| {
+                let parameters = m.parameters.iter().map(|q| json!({"name": q.name, "expected": q.expected(), "unit": q.unit, "meaning": q.meaning, "default": q.default}));
+                json!({"model": m.name, "summary": m.summary, "parameters": parameters.collect::<Vec<_>>()})
+            });
+            out.insert("models".to_owned(), models.collect::<Vec<_>>().into());
+        }
+        Source::Measured(file) => out.append(&mut table::facts(file)),
+    }
     out.insert("isotropic".to_owned(), p.brdf.is_isotropic().into());
     let kind = match (p.brdf.is_delta(), p.brdf.has_delta()) {
         (true, _) => "delta",
@@ -218,10 +246,11 @@ pub fn info(p: &Prepared<'_>, audit: &Audit, nine: &Nine) -> Map<String, Value> 
     };
     out.insert("kind".to_owned(), kind.into());
     out.insert("reciprocity_max_relative".to_owned(), audit.reciprocity.map(|w| w.value).into());
-    out.insert(
-        "reciprocal".to_owned(),
-        audit.reciprocity.is_none_or(|w| w.value <= Limits::default().reciprocity).into(),
-    );
+    let limits = Limits::of(p.brdf);
+    out.insert("reciprocal".to_owned(), audit.reciprocity.is_none_or(|w| w.value <= limits.reciprocity).into());
+    out.insert("negative_fraction".to_owned(), audit.negative_fraction.into());
+    out.insert("measured_fraction".to_owned(), audit.measured_fraction.into());
+    out.insert("passes".to_owned(), audit.passes.into());
     let albedo = audit.albedo.iter().filter(|a| a.phi_i_deg == 0.0);
     let albedo = albedo.map(|a| json!({"theta_i_deg": a.theta_i_deg, "albedo": a.reflectance, "error": a.error}));
     out.insert("albedo".to_owned(), albedo.collect::<Vec<_>>().into());
@@ -262,7 +291,12 @@ pub fn info_text(heading: &str, p: &Prepared<'_>, object: &Map<String, Value>) -
     let mut out = format!("{heading}\n");
     let text =
         |key: &str| object.get(key).map_or(String::new(), |v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
-    let _ = writeln!(out, "  material    {}", text("material"));
+    match p.source {
+        Source::Described(_) => {
+            let _ = writeln!(out, "  material    {}", text("material"));
+        }
+        Source::Measured(file) => out.push_str(&table::facts_text(file)),
+    }
     let _ = writeln!(
         out,
         "  kind        {}{}",
@@ -270,10 +304,12 @@ pub fn info_text(heading: &str, p: &Prepared<'_>, object: &Map<String, Value>) -
         if p.brdf.is_isotropic() { ", isotropic" } else { ", anisotropic" }
     );
     let _ = writeln!(out, "  reciprocal  {}", text("reciprocal"));
-    for model in p.material.models() {
-        let _ = writeln!(out, "  {}: {}", model.name, model.summary);
-        for parameter in model.parameters {
-            let _ = writeln!(out, "    {parameter}");
+    if let Source::Described(material) = p.source {
+        for model in material.models() {
+            let _ = writeln!(out, "  {}: {}", model.name, model.summary);
+            for parameter in model.parameters {
+                let _ = writeln!(out, "    {parameter}");
+            }
         }
     }
     let numbers = |v: Option<&Value>| -> String {
@@ -282,8 +318,7 @@ pub fn info_text(heading: &str, p: &Prepared<'_>, object: &Map<String, Value>) -
         let shown: Vec<String> = shown.collect();
         if shown.is_empty() { "–".to_owned() } else { shown.join("  ") }
     };
-    let bands: Vec<String> = (0..p.bands.count()).map(|i| p.band(i)).collect();
-    let _ = writeln!(out, "  albedo at θi: {}", bands.join(", "));
+    let _ = writeln!(out, "  albedo at θi: {}", p.band_names());
     for row in object.get("albedo").and_then(Value::as_array).into_iter().flatten() {
         let theta = row.get("theta_i_deg").and_then(Value::as_f64).unwrap_or_default();
         // Every fifteen degrees, and the steep end.
@@ -303,8 +338,17 @@ pub fn info_text(heading: &str, p: &Prepared<'_>, object: &Map<String, Value>) -
 // ----------------------------------------------------------------------------------------------------------- eval
 
 /// Headers of the table of values.
-pub const EVAL_COLUMNS: [&str; 8] =
-    ["path", "theta_i_deg", "phi_i_deg", "theta_o_deg", "phi_deg", "wavelength_nm", "channel", "brdf_per_sr"];
+pub const EVAL_COLUMNS: [&str; 9] = [
+    "path",
+    "theta_i_deg",
+    "phi_i_deg",
+    "theta_o_deg",
+    "phi_deg",
+    "wavelength_nm",
+    "channel",
+    "brdf_per_sr",
+    "measured",
+];
 
 /// That values do not contain what they cannot, as a finding.
 #[must_use]
@@ -325,7 +369,7 @@ pub fn eval(p: &Prepared<'_>, geometries: &[Geometry]) -> Map<String, Value> {
         .map(|g| {
             let (i, o) = g.directions();
             p.brdf.evaluate(i, o, &mut values);
-            json!({"theta_i_deg": g.theta_i_deg, "phi_i_deg": g.phi_i_deg, "theta_o_deg": g.theta_o_deg, "phi_deg": g.phi_deg, "brdf_per_sr": values})
+            json!({"theta_i_deg": g.theta_i_deg, "phi_i_deg": g.phi_i_deg, "theta_o_deg": g.theta_o_deg, "phi_deg": g.phi_deg, "brdf_per_sr": values, "measured": p.brdf.is_measured(i, o)})
         })
         .collect();
     out.insert("rows".to_owned(), rows.into());
@@ -334,20 +378,22 @@ pub fn eval(p: &Prepared<'_>, geometries: &[Geometry]) -> Map<String, Value> {
 
 /// The values as rows of cells, one per direction and band.
 #[must_use]
-pub fn eval_rows(path: &str, p: &Prepared<'_>, geometries: &[Geometry]) -> Vec<[String; 8]> {
+pub fn eval_rows(path: &str, p: &Prepared<'_>, geometries: &[Geometry]) -> Vec<[String; 9]> {
     let mut values = vec![0.0; p.brdf.bands()];
     let mut out = Vec::new();
     for g in geometries {
         let (i, o) = g.directions();
         p.brdf.evaluate(i, o, &mut values);
+        let measured = p.brdf.is_measured(i, o).to_string();
         for (band, value) in values.iter().enumerate() {
-            let (nm, channel) = match p.bands {
-                Bands::Wavelengths(nm) => (nm[band].to_string(), String::new()),
-                Bands::Channels(_) => (String::new(), (band + 1).to_string()),
+            let (nm, channel) = match (&p.bands[band], p.source) {
+                (Channel::Wavelength(nm), _) => (nm.to_string(), String::new()),
+                (Channel::Named(name), Source::Measured(_)) => (String::new(), name.clone()),
+                (Channel::Named(_), Source::Described(_)) => (String::new(), (band + 1).to_string()),
             };
             let angles = [g.theta_i_deg, g.phi_i_deg, g.theta_o_deg, g.phi_deg].map(|v| v.to_string());
             let [ti, pi, to, phi] = angles;
-            out.push([path.to_owned(), ti, pi, to, phi, nm, channel, value.to_string()]);
+            out.push([path.to_owned(), ti, pi, to, phi, nm, channel, value.to_string(), measured.clone()]);
         }
     }
     out
@@ -356,14 +402,15 @@ pub fn eval_rows(path: &str, p: &Prepared<'_>, geometries: &[Geometry]) -> Vec<[
 /// The values for people.
 #[must_use]
 pub fn eval_text(heading: &str, p: &Prepared<'_>, geometries: &[Geometry]) -> String {
-    let bands: Vec<String> = (0..p.bands.count()).map(|i| p.band(i)).collect();
-    let mut out = format!("{heading}\n  θi [°]   θo [°]    φ [°]   f [1/sr] at {}\n", bands.join(", "));
+    let mut out = format!("{heading}\n  θi [°]   θo [°]    φ [°]   f [1/sr] at {}\n", p.band_names());
     let mut values = vec![0.0; p.brdf.bands()];
     for g in geometries {
         let (i, o) = g.directions();
         p.brdf.evaluate(i, o, &mut values);
         let shown: Vec<String> = values.iter().map(|v| significant(*v, DIGITS)).collect();
-        let _ = writeln!(out, "{:>8} {:>8} {:>8}   {}", g.theta_i_deg, g.theta_o_deg, g.phi_deg, shown.join("  "));
+        let guess = if p.brdf.is_measured(i, o) { "" } else { "  (not measured)" };
+        let angles = format!("{:>8} {:>8} {:>8}", g.theta_i_deg, g.theta_o_deg, g.phi_deg);
+        let _ = writeln!(out, "{angles}   {}{guess}", shown.join("  "));
     }
     out
 }
