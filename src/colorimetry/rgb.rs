@@ -70,13 +70,15 @@ pub const ACESCG: Space = Space {
     white_name: "ACES (≈ D60)",
     encoding: Encoding::Linear,
 };
+
 /// Radiance's own primaries with the equal-energy white (`src/common/color.h`: .640 .330, .290 .600, .150 .060): luminance is
 /// .265 R + .670 G + .065 B.
 pub const RADIANCE: Space = Space {
     key: "radiance",
     name: "Radiance RGB",
     primaries: [[0.640, 0.330], [0.290, 0.600], [0.150, 0.060]],
-    white: [1.0 / 3.0, 1.0 / 3.0],
+    // Four digits: only with them do the luminance weights of its source come out.
+    white: [0.3333, 0.3333],
     white_name: "E",
     encoding: Encoding::Linear,
 };
