@@ -6,8 +6,9 @@
 //! one after the other on every processor, so that results are the same bits everywhere.
 //!
 //! One output reads its channels one after the other, in one stream from memory: as fast as reading can be. Several outputs are
-//! summed in one pass over short runs of four channels at a time, which loads and stores their sums less often; longer runs and
-//! single pixels of all channels, which lie a power of two apart, were slower. The instruction set is chosen at run time (crate
+//! summed in one pass over short runs of six channels at a time, which loads and stores their sums less often: the sums of three
+//! outputs and the runs just fit the first cache. Longer runs, single pixels of all channels (which lie a power of two apart),
+//! partial sums in `f32` and prefetching were slower or no faster: what is left is waiting for memory. The instruction set is chosen at run time (crate
 //! `pulp`).
 
 use pulp::{Arch, Simd, WithSimd};
@@ -15,7 +16,9 @@ use pulp::{Arch, Simd, WithSimd};
 /// Pixels of which the sums of one output are kept at a time, in the first cache.
 const BLOCK: usize = 1024;
 /// The same of several outputs.
-const SHORT_BLOCK: usize = 256;
+const SHORT_BLOCK: usize = 512;
+/// Channels added to the sums of several outputs in one go.
+const AT_ONCE: usize = 6;
 /// Outputs summed in one pass over a row; more take further passes, over samples that the cache then holds.
 const OUTPUTS: usize = 4;
 
@@ -106,16 +109,16 @@ fn one(weights: &[f64], row: &[f32], width: usize, out: &mut [f32]) {
 #[inline(always)]
 fn several<const N: usize>(weights: &[f64], row: &[f32], width: usize, out: &mut [f32], stride: usize) {
     let (weights, _) = weights.as_chunks::<N>();
-    let (fours, rest) = weights.as_chunks::<4>();
+    let (full, rest) = weights.as_chunks::<AT_ONCE>();
     for x in (0..width).step_by(SHORT_BLOCK) {
         let count = SHORT_BLOCK.min(width - x);
         let channel = |c: usize| &row[c * width + x..][..count];
         let mut sums = [[0.0_f64; SHORT_BLOCK]; N];
-        for (i, weights) in fours.iter().enumerate() {
-            add(&mut sums, [channel(4 * i), channel(4 * i + 1), channel(4 * i + 2), channel(4 * i + 3)], weights);
+        for (i, weights) in full.iter().enumerate() {
+            add(&mut sums, std::array::from_fn(|j| channel(AT_ONCE * i + j)), weights);
         }
         for (i, weights) in rest.iter().enumerate() {
-            add(&mut sums, [channel(4 * fours.len() + i)], std::array::from_ref(weights));
+            add(&mut sums, [channel(AT_ONCE * full.len() + i)], std::array::from_ref(weights));
         }
         for (k, sums) in sums.iter().enumerate() {
             store(&sums[..count], &mut out[k * stride + x..]);
