@@ -15,6 +15,7 @@
 //! Pixels are `f32`, as cameras and renderers deliver them; weights and sums are `f64` ([`kernel`]).
 
 pub mod beside;
+pub mod compare;
 pub mod converted;
 pub mod description;
 pub mod error;

@@ -5,6 +5,7 @@ mod common;
 
 mod agreement;
 mod cli;
+mod compare;
 mod envi;
 mod exr;
 mod falsecolor;

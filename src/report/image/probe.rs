@@ -325,7 +325,8 @@ pub fn probe_csv(all: &[Probed], table: Table) -> Result<Vec<u8>, String> {
     }
 }
 
-fn rows(rows: &[Vec<String>]) -> Vec<u8> {
+/// A table with its header as CSV.
+pub(super) fn rows(rows: &[Vec<String>]) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         // A vector takes every byte, and all rows are alike.

@@ -8,8 +8,9 @@ pub(super) fn key(photometric: &Photometric) -> &'static str {
     photometric.quantity().and_then(keys).map_or("photopic", |k| k.luminous)
 }
 
-/// Its name: `luminance`, `illuminance` …
-pub(super) fn name(photometric: &Photometric) -> String {
+/// Its name: `luminance`, `illuminance` …; `photopic` where it is relative.
+#[must_use]
+pub fn name(photometric: &Photometric) -> String {
     let words: Vec<&str> = key(photometric).split('_').collect();
     let end = words.iter().position(|w| matches!(*w, "cd" | "lx" | "lm")).unwrap_or(words.len());
     words[..end].join(" ")
