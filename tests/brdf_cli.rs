@@ -228,6 +228,40 @@ fn a_table_is_compressed_measured_and_inferred() {
 }
 
 #[test]
+fn a_table_lit_at_one_angle_is_judged_by_what_was_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // ρ/π with ρ = 1.5, lit at 30°, seen to `last`; every 5° and 15°.
+    let table = |last: u32| {
+        let mut out = String::from("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n");
+        for theta in (0..=last).step_by(5) {
+            for phi in (0..if theta > 0 { 360 } else { 1 }).step_by(15) {
+                out += &format!("30,0,{theta},{phi},{}\n", 1.5 / std::f64::consts::PI);
+            }
+        }
+        let path = folder.path().join(format!("{last}.csv"));
+        fs::write(&path, out).expect("written");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let check = |path: &str| {
+        let (code, document, _) = run(&["check", path, "--json"], "");
+        (code, json(&document)["results"][0].clone())
+    };
+    let (code, all) = check(&table(85));
+    assert_eq!((code, &all["incidences"], &all["albedo_max_at_deg"]), (1, &1.into(), &30.0.into()));
+    assert_eq!(all["albedo"].as_array().map(Vec::len), Some(1));
+    let number = |v: &Value| v.as_f64().expect("a number");
+    // All but the rim beyond 85° is measured: sin²85° = 0.9924 of ρ, and what lies within reach beyond it.
+    assert!((1.5 * 0.9924..1.5 + 1e-3).contains(&number(&all["albedo_max"])), "{all}");
+    let (code, part) = check(&table(30));
+    // sin²30° = 1/4 of ρ at least; the neighbourhood of the last ring adds to it, but not up to 1 = 1.5 sin²54.7°.
+    assert!(code == 0 && (0.375..1.0).contains(&number(&part["albedo_max"])), "{part}");
+    assert!((number(&part["albedo"][0]["albedo"][0]) - 1.5).abs() < 1e-3);
+    assert!((0.25..0.67).contains(&number(&part["measured_fraction"])), "{part}");
+    // Lit at one angle, nothing but retro-reflection was measured both ways.
+    assert_eq!(part["reciprocity_max_relative"], 0.0);
+}
+
+#[test]
 fn a_model_becomes_a_merl_file_a_list_of_points_and_the_same_file_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();

@@ -67,9 +67,8 @@ impl SetArgs {
 }
 
 /// The set, and what is made of it.
-///
-/// Example: photopic brdf compress train *.binary -o merl.basis
 #[derive(Debug, Args)]
+#[command(after_help = "Example: photopic brdf compress train *.binary -o merl.basis")]
 pub(in crate::cli) struct TrainArgs {
     #[command(flatten)]
     set: SetArgs,
