@@ -4,6 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
+use photopic::brdf::description::{Bands, Material};
+use photopic::brdf::format::open;
+use photopic::brdf::table::Resolution;
 use serde_json::Value;
 
 /// Runs the program; exit code, standard output and standard error.
@@ -222,6 +225,139 @@ fn a_table_is_compressed_measured_and_inferred() {
     fs::write(&basis, bytes).expect("written");
     let (code, _, stderr) = compress(&["directions", "-b", &basis]);
     assert!(code == 2 && stderr.contains("set.basis: found"), "{stderr}");
+}
+
+#[test]
+fn a_table_lit_at_one_angle_is_judged_by_what_was_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // ρ/π with ρ = 1.5, lit at 30°, seen to `last`; every 5° and 15°.
+    let table = |last: u32| {
+        let mut out = String::from("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n");
+        for theta in (0..=last).step_by(5) {
+            for phi in (0..if theta > 0 { 360 } else { 1 }).step_by(15) {
+                out += &format!("30,0,{theta},{phi},{}\n", 1.5 / std::f64::consts::PI);
+            }
+        }
+        let path = folder.path().join(format!("{last}.csv"));
+        fs::write(&path, out).expect("written");
+        path.to_str().expect("a plain path").to_owned()
+    };
+    let check = |path: &str| {
+        let (code, document, _) = run(&["check", path, "--json"], "");
+        (code, json(&document)["results"][0].clone())
+    };
+    let (code, all) = check(&table(85));
+    assert_eq!((code, &all["incidences"], &all["albedo_max_at_deg"]), (1, &1.into(), &30.0.into()));
+    assert_eq!(all["albedo"].as_array().map(Vec::len), Some(1));
+    let number = |v: &Value| v.as_f64().expect("a number");
+    // All but the rim beyond 85° is measured: sin²85° = 0.9924 of ρ, and what lies within reach beyond it.
+    assert!((1.5 * 0.9924..1.5 + 1e-3).contains(&number(&all["albedo_max"])), "{all}");
+    let (code, part) = check(&table(30));
+    // sin²30° = 1/4 of ρ at least; the neighbourhood of the last ring adds to it, but not up to 1 = 1.5 sin²54.7°.
+    assert!(code == 0 && (0.375..1.0).contains(&number(&part["albedo_max"])), "{part}");
+    assert!((number(&part["albedo"][0]["albedo"][0]) - 1.5).abs() < 1e-3);
+    assert!((0.25..0.67).contains(&number(&part["measured_fraction"])), "{part}");
+    // Lit at one angle, nothing but retro-reflection was measured both ways.
+    assert_eq!(part["reciprocity_max_relative"], 0.0);
+}
+
+#[test]
+fn a_model_becomes_a_merl_file_a_list_of_points_and_the_same_file_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let convert = |arguments: &[&str]| {
+        let (code, _, stderr) = run(&[&["convert"], arguments].concat(), "");
+        assert_eq!(code, 0, "{arguments:?}: {stderr}");
+    };
+    let resolution = ["--resolution", "9x10x12"];
+    let (grey, merl) = (path("grey.binary"), path("gold.binary"));
+    convert(&[&["lambert(reflectance=0.5)", "-o", &grey], &resolution[..]].concat());
+    let bytes = fs::read(&grey).expect("a table");
+    let bins = 9 * 10 * 12;
+    assert_eq!((bytes.len(), &bytes[..12]), (12 + 24 * bins, &[9, 0, 0, 0, 10, 0, 0, 0, 12, 0, 0, 0][..]));
+    // By the format: f_r = ρ/π is raw · (1, 1.15, 1.66)/1500; kept in single precision on the way.
+    for (plane, scale) in [1.0, 1.15, 1.66].into_iter().enumerate() {
+        let raw = f64::from_le_bytes(bytes[12 + 8 * bins * plane..][..8].try_into().expect("eight bytes"));
+        let expected = 0.5 / std::f64::consts::PI * 1500.0 / scale;
+        assert!((raw / expected - 1.0).abs() < 6e-8, "{raw} {expected}");
+    }
+    let model = "0.5*lambert(reflectance=0.4) + 0.5*ggx(alpha=0.3, medium=Au)";
+    convert(&[&[model, "-o", &merl], &resolution[..]].concat());
+    let read = |path: &str| open(&fs::read(path).expect("a file"), None).expect("a table").value.table;
+    let material: Material = model.parse().expect("a material");
+    let truth = material.prepare(Bands::Wavelengths(&[650.0, 550.0, 450.0])).expect("a material");
+    let table = read(&merl);
+    let (mut places, mut expected) = (0, [0.0; 3]);
+    table.entries(&mut |entry| {
+        places += 1;
+        truth.evaluate(entry.incident, entry.outgoing, &mut expected);
+        // Half a unit in the last place of single precision, and the rounding of directions.
+        assert!(entry.values.iter().zip(&expected).all(|(v, e)| (v - e).abs() <= 6.0e-8 * e + 1e-12));
+    });
+    assert!(places > bins / 2 && places < bins, "{places} of {bins} above the horizon");
+    // All of the ways round.
+    for (name, options) in
+        [("points.csv", &[][..]), ("points.alta", &[][..]), ("binary.alta", &["--to", "alta-binary"][..])]
+    {
+        let (points, again) = (path(name), path("again.binary"));
+        convert(&[&[&merl, "-o", &points], options].concat());
+        assert_eq!(read(&points).coverage(), (places, 0), "{name}");
+        convert(&[&[points.as_str(), "-o", &again], &resolution[..]].concat());
+        assert_eq!(fs::read(&again).expect("a table"), fs::read(&merl).expect("a table"), "{name}");
+    }
+}
+
+#[test]
+fn what_a_file_cannot_carry_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let points = path("points.csv");
+    // Measured at few places, once below zero.
+    let head = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,channel,value\n";
+    let rows = "30,0,30,180,X,-0.1\n30,0,40,180,X,0.2\n30,0,50,180,X,0.3\n";
+    fs::write(&points, format!("{head}{rows}")).expect("written");
+    let merl = path("t.binary");
+    let convert = |arguments: &[&str]| run(&[&["--verbose", "convert"], arguments].concat(), "");
+    let small = ["--resolution", "30x30x36"];
+    let negatives = || {
+        let bytes = fs::read(&merl).expect("a table");
+        bytes[12..].chunks_exact(8).filter(|b| f64::from_le_bytes((*b).try_into().expect("eight")) < 0.0).count()
+    };
+    let (code, _, stderr) = convert(&[&[points.as_str(), "-o", &merl], &small[..]].concat());
+    assert!(code == 0 && ["B402", "B403", "B404"].iter().all(|c| stderr.contains(c)), "{stderr}");
+    let (missing, all) = (negatives(), 3 * 30 * 30 * 36);
+    assert!(missing > all / 2 && missing < all);
+    let (code, _, stderr) = convert(&[&[points.as_str(), "-o", &merl, "--fill"], &small[..]].concat());
+    assert!(code == 0 && stderr.contains("best guess") && stderr.contains("became 0"), "{stderr}");
+    // What is left has no meaning: below the horizon.
+    let below = (0..30 * 30 * 36).filter(|bin| {
+        let (i, o) = Resolution { theta_h: 30, theta_d: 30, phi_d: 36 }.centre(*bin).directions();
+        i.z <= 0.0 || o.z <= 0.0
+    });
+    assert_eq!(negatives(), 3 * below.count());
+    let (code, _, stderr) = convert(&["ward(ks=0.8, alpha_x=0.1, alpha_y=0.4)", "-o", &merl, small[0], small[1]]);
+    assert!(code == 0 && stderr.contains("B401"), "{stderr}");
+    let alta = path("t.alta");
+    let (code, _, stderr) = convert(&["ggx(alpha=0.1, medium=Au)", "-o", &alta, "-w", "500"]);
+    assert!(code == 0 && stderr.contains("B404") && stderr.contains("500 nm"), "{stderr}");
+    let (code, table, _) = convert(&["lambert(reflectance=0.5)", "--theta-i", "0,30", "--to", "csv", "-o", "-"]);
+    // At θ_o = 0 every azimuth is the same place.
+    assert_eq!((code, table.lines().count()), (0, 1 + 2 * (17 * 24 + 1) * 3));
+    for (arguments, expected) in [
+        (vec![points.as_str(), "-o", &points], "overwrite an input"),
+        (vec![points.as_str(), "-o", "x.exr"], "x.exr: expected a name ending in .binary, .alta or .csv"),
+        (vec!["lambert(reflectance=0.5)", "-w", "400,500", "-o", &merl], "found 2 channels; expected 3; --channels"),
+        (vec![points.as_str(), "--channels", "Y", "-o", &merl], "expected channels of the table: X"),
+        (vec!["mirror()", "-o", &merl], "nothing but a Dirac lobe"),
+        (vec!["nowhere.bsdf", "-o", &merl], "nowhere.bsdf: there is no such file"),
+        (vec![points.as_str(), "--theta-i", "0", "-o", &merl], "a MERL file has its own bins"),
+        (vec![points.as_str(), "--theta-i", "90", "-o", &alta], "expected 0 to below 90 degrees"),
+        (vec![points.as_str(), "--theta-i", "5,5", "-o", &alta], "has 5 twice"),
+        (vec!["-", "-o", &merl], "-:1:1: found an empty input"),
+    ] {
+        let (code, _, stderr) = convert(&arguments);
+        assert!(code == 2 && stderr.contains(expected), "{arguments:?}: {code} {stderr}");
+    }
 }
 
 /// A table of points of a material, as CSV.

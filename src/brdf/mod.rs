@@ -128,6 +128,12 @@ pub trait Brdf: fmt::Debug + Send + Sync {
         reflectance::directional(self, incident, &reflectance::Cone::HEMISPHERE, reflectance)
     }
 
+    /// The directions of incidence `[θ_i, φ_i]` in degrees under which a table was lit, where they are few; `None` for models, and for
+    /// tables that hold as many directions of incidence as outgoing ones. φ_i is 0 in an isotropic table.
+    fn incidences_deg(&self) -> Option<Vec<[f64; 2]>> {
+        None
+    }
+
     /// Whether the value for two directions is known: always for a model; in a measured table, whether the place was measured.
     /// [`Brdf::evaluate`] gives the table's best guess where it was not.
     fn is_measured(&self, incident: DVec3, outgoing: DVec3) -> bool {

@@ -1,7 +1,8 @@
 //! The real files of `../shared/brdf`, with figures from its README and from the files themselves.
 
 use photopic::brdf::coordinates::{HalfDiff, Parameterisation};
-use photopic::brdf::format::{Format, alta, detect, klems, open, zemax};
+use photopic::brdf::format::convert::nodes;
+use photopic::brdf::format::{Format, alta, csv, detect, klems, open, zemax};
 use photopic::brdf::table::specular::Rim;
 use photopic::brdf::table::{Known, Table};
 use photopic::geometry::direction::{from_angles, from_degrees};
@@ -102,7 +103,7 @@ fn written_alta_is_what_was_read() {
         let Some(bytes) = shared(name) else { return };
         let read = alta::parse(&bytes).expect("points").value;
         for encoding in [alta::Encoding::Text, alta::Encoding::Binary] {
-            let again = alta::parse(&alta::write(&read, encoding)).expect("our own file");
+            let again = alta::parse(&alta::write(&read, encoding).value).expect("our own file");
             assert_eq!((again.value.len(), codes(&again.findings).len()), (read.len(), 0), "{name}");
             for ((i, o, v), (i2, o2, v2)) in read.iter().zip(again.value.iter()) {
                 assert!(
@@ -143,5 +144,27 @@ fn the_retro_reflector_shines_back() {
         let lit = read.value.iter().filter(|(i, o, _)| (i.z - theta_i.to_radians().cos()).abs() < 1e-9 && o.x > 0.0);
         let (i, o, v) = lit.max_by(|a, b| a.2[0].total_cmp(&b.2[0])).expect("points");
         assert!(i.angle_between(o).to_degrees() < 1.5, "{i} {o} {v:?}");
+    }
+}
+
+#[test]
+fn a_zemax_table_becomes_rows_of_its_own_angles() {
+    let Some(bytes) = shared("test_13_planesymmetric_brdf_zemax.bsdf") else { return };
+    let table = open(&bytes, None).expect("a table").value.table;
+    let points = nodes(&table).expect("points").value;
+    let written = csv::write(&points);
+    // The pole β = 0 of 13 angles of incidence stands in 19 azimuths.
+    assert!(written.findings[0].message.starts_with("234 points"), "{:?}", written.findings);
+    let read = open(written.value.as_bytes(), None).expect("our own file");
+    assert_eq!((read.value.format, read.value.table.coverage()), (Format::Csv, (points.len() - 234, 0)));
+    assert!(read.value.table.is_isotropic() && read.value.table.channels() == table.channels());
+    // As the file has them at θ_i = 15°: the mirror direction, 5 and 40° from it towards the normal, 30° from it to the horizon.
+    for row in [
+        "15,0,15,180,Monochrome,0.06375",
+        "15,0,10,180,Monochrome,0.0618",
+        "15,0,25,0,Monochrome,0.04038",
+        "15,0,45,180,Monochrome,0.054",
+    ] {
+        assert!(written.value.lines().any(|l| l == row), "{row}");
     }
 }

@@ -67,7 +67,7 @@ fn csv_round_trip_in_any_order_of_columns() {
     let mut v = [0.0; 2];
     points.value(from_degrees(30.0, 10.0), from_degrees(60.0, 100.0), &mut v);
     assert_eq!(v, [0.1, 0.2], "one azimuth of incidence alone: isotropic, so that only the difference counts");
-    let again = csv::parse(csv::write(points).as_bytes()).expect("our own file").value;
+    let again = csv::parse(csv::write(points).value.as_bytes()).expect("our own file").value;
     assert_eq!(again.channels(), points.channels());
     for ((i, o, v), (i2, o2, v2)) in points.iter().zip(again.iter()) {
         assert!((i - i2).length() < 1e-15 && (o - o2).length() < 1e-15 && v == v2);

@@ -12,6 +12,7 @@ use std::fmt::Write;
 
 use glam::DVec3;
 
+use super::convert::channel_names;
 use super::error::{Error, ErrorKind};
 use super::text::{Line, Word, decode, lines};
 use crate::brdf::coordinates::Parameterisation;
@@ -204,8 +205,10 @@ fn points(
 }
 
 /// A table as a file, in its own parameterisation. Decimal numbers have the fewest digits that give the same double again.
+///
+/// Of channels the file names none but red, green, blue and X, Y, Z; others are counted by its readers, which a finding says.
 #[must_use]
-pub fn write(table: &Points, encoding: Encoding) -> Vec<u8> {
+pub fn write(table: &Points, encoding: Encoding) -> Checked<Vec<u8>> {
     let input = table.parameterisation();
     let (n, m) = (input.dimension(), table.channels().len());
     let names: Vec<String> = table.channels().iter().map(ToString::to_string).collect();
@@ -236,5 +239,11 @@ pub fn write(table: &Points, encoding: Encoding) -> Vec<u8> {
             }
         }
     }
-    out
+    let mut findings = Vec::new();
+    let counted = (1..=m).map(|i| i.to_string());
+    if output == "INV_STERADIAN" && !names.iter().cloned().eq(counted) {
+        let words = format!("the file has no names for its values: {}", channel_names(table.channels()));
+        findings.push(Finding::info("B404", words));
+    }
+    Checked { value: out, findings }
 }

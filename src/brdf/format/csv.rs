@@ -10,6 +10,8 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 
+use glam::DVec3;
+
 use super::error::{Error, ErrorKind};
 use super::text::{Line, Word, decode, lines};
 use crate::brdf::coordinates::Parameterisation;
@@ -126,21 +128,69 @@ fn incomplete(
     line.error(ErrorKind::unexpected(found, expected))
 }
 
-/// A table as CSV, points in order, numbers with the fewest digits that give the same double again.
+/// A table as CSV, points in order: angles to 1e-12°, values with the fewest digits that give the same double again.
+///
+/// An isotropic table is turned to φ_i = 0, by which the reader knows it. Points of the same directions (to 1e-10) become one with
+/// their mean, as the pole of a grid does, and are counted.
 #[must_use]
-pub fn write(table: &Points) -> String {
+pub fn write(table: &Points) -> Checked<String> {
+    let n = table.channels().len();
+    let mut rows: Vec<([DVec3; 2], f64)> = Vec::with_capacity(table.len());
+    let mut means: Vec<f64> = Vec::with_capacity(table.len() * n);
+    let mut places: HashMap<[i64; 6], usize> = HashMap::with_capacity(table.len());
+    for (incident, outgoing, values) in table.iter() {
+        let pair = if table.is_isotropic() { unturned(incident, outgoing) } else { [incident, outgoing] };
+        let place = *places.entry(same_place(&pair)).or_insert(rows.len());
+        if place == rows.len() {
+            rows.push((pair, 0.0));
+            means.resize(means.len() + n, 0.0);
+        }
+        rows[place].1 += 1.0;
+        let count = rows[place].1;
+        // Equal values keep theirs to the last digit.
+        means[place * n..][..n].iter_mut().zip(values).for_each(|(m, v)| *m += (v - *m) / count);
+    }
     let wavelengths = matches!(table.channels().first(), Some(Channel::Wavelength(_)));
     let column = if wavelengths { "wavelength_nm" } else { "channel" };
+    let names: Vec<String> = (table.channels().iter())
+        .map(|channel| match channel {
+            Channel::Wavelength(nm) => nm.to_string(),
+            Channel::Named(name) => name.replace([',', ';', '\t', '\n'], " "),
+        })
+        .collect();
     let mut out = format!("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,{column},value\n");
-    for (incident, outgoing, values) in table.iter() {
-        let [ti, pi, to, po] = [theta(incident), phi(incident), theta(outgoing), phi(outgoing)].map(f64::to_degrees);
-        for (channel, value) in table.channels().iter().zip(values) {
-            let channel = match channel {
-                Channel::Wavelength(nm) => nm.to_string(),
-                Channel::Named(name) => name.clone(),
-            };
-            let _ = writeln!(out, "{ti},{pi},{to},{po},{channel},{value}");
+    for (([incident, outgoing], _), means) in rows.iter().zip(means.chunks_exact(n)) {
+        // Rounding of the directions, which would make 14.999999999999998° of 15°, is not written.
+        let degrees = |rad: f64| (rad.to_degrees() * 1e12).round() / 1e12;
+        let [ti, pi, to, po] = [theta(*incident), phi(*incident), theta(*outgoing), phi(*outgoing)].map(degrees);
+        for (name, mean) in names.iter().zip(means) {
+            let _ = writeln!(out, "{ti},{pi},{to},{po},{name},{mean}");
         }
     }
-    out
+    let mut findings = Vec::new();
+    let doubled = table.len() - rows.len();
+    if doubled > 0 {
+        let words =
+            format!("{doubled} points have the directions of another one; each place is written once, with the mean");
+        findings.push(Finding::info("B406", words));
+    }
+    Checked { value: out, findings }
+}
+
+/// The pair turned about the normal until φ_i is 0.
+fn unturned(incident: DVec3, outgoing: DVec3) -> [DVec3; 2] {
+    let across = incident.x.hypot(incident.y);
+    if incident.y == 0.0 && incident.x >= 0.0 || across == 0.0 {
+        return [incident, outgoing];
+    }
+    let (cos, sin) = (incident.x / across, incident.y / across);
+    let turned = DVec3::new(cos * outgoing.x + sin * outgoing.y, cos * outgoing.y - sin * outgoing.x, outgoing.z);
+    [DVec3::new(across, 0.0, incident.z), turned]
+}
+
+/// The cell of 1e-10 in which the pair lies.
+fn same_place(pair: &[DVec3; 2]) -> [i64; 6] {
+    let [i, o] = pair;
+    #[expect(clippy::cast_possible_truncation, reason = "unit vectors")]
+    [i.x, i.y, i.z, o.x, o.y, o.z].map(|c| (c * 1e10).round() as i64)
 }

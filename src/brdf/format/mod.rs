@@ -2,6 +2,7 @@
 
 pub mod alta;
 pub mod astm;
+pub mod convert;
 pub mod csv;
 mod error;
 pub mod klems;

@@ -22,7 +22,7 @@ use super::channels::{Mix, mixed};
 use super::marginal::{Marginal, cell};
 use super::nodes::Axis;
 use super::{Channel, Entry, Error, Known};
-use crate::geometry::direction::{from_angles, from_degrees, phi, theta};
+use crate::geometry::direction::{from_angles, phi, theta};
 
 /// The arrays of a file, as they stand in it: the last index runs fastest.
 #[derive(Debug, Clone, PartialEq)]
@@ -227,28 +227,6 @@ impl Adaptive {
             Axis::new("u (towards larger θ_m)", columns, 0.0, 90.0),
             Axis::new("v (around)", rows, 0.0, 360.0),
         ]
-    }
-
-    /// Calls `f` with the tabulated ω_i and a net of ω_o.
-    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
-        let mut values = vec![0.0; self.fields.channels.len()];
-        let azimuths = if self.is_isotropic() { &self.fields.phi_i[..1] } else { &self.fields.phi_i[..] };
-        for (theta_i, phi_i) in self
-            .fields
-            .theta_i
-            .iter()
-            .flat_map(|t| azimuths.iter().map(move |p| (*t, *p)))
-            .filter(|(t, _)| *t < FRAC_PI_2)
-        {
-            let incident = from_angles(theta_i, phi_i);
-            for (theta_o, phi_o) in
-                (0..18).flat_map(|t| (0..24).map(move |p| (5.0 * f64::from(t), 15.0 * f64::from(p))))
-            {
-                let outgoing = from_degrees(theta_o, phi_i.to_degrees() + phi_o);
-                self.value(incident, outgoing, &mut values);
-                f(incident, outgoing, &values);
-            }
-        }
     }
 }
 

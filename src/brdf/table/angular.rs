@@ -99,16 +99,4 @@ impl Angular {
         let azimuth = |name| Axis::new(name, self.azimuths, 0.0, last);
         vec![polar("θ_i"), azimuth("φ_i"), polar("θ_o"), azimuth("φ_o")]
     }
-
-    /// Calls `f` with the directions and values of every node.
-    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
-        let direction = |i: usize| {
-            let azimuth = (i % self.azimuths) as f64 * TAU / self.azimuths as f64;
-            from_angles(self.thetas_rad[i / self.azimuths], azimuth)
-        };
-        let side = self.thetas_rad.len() * self.azimuths;
-        for (index, node) in self.values.chunks_exact(self.channels.len()).enumerate() {
-            f(direction(index / side), direction(index % side), node);
-        }
-    }
 }

@@ -78,6 +78,18 @@ impl Brdf for Table {
         reflectance::directional(self, incident, &reflectance::Cone::HEMISPHERE, albedo)
     }
 
+    fn incidences_deg(&self) -> Option<Vec<[f64; 2]>> {
+        match self {
+            Self::Specular(table) => {
+                let turns = table.rotations_deg().iter().map(|turn| if self.is_isotropic() { 0.0 } else { *turn });
+                let lit = turns.flat_map(|turn| table.incidences_deg().iter().map(move |theta| [*theta, turn]));
+                Some(lit.filter(|l| l[0] < 90.0).collect()).filter(|l: &Vec<_>| !l.is_empty())
+            }
+            Self::Points(table) => table.incidences_deg(),
+            _ => None,
+        }
+    }
+
     fn is_measured(&self, incident: DVec3, outgoing: DVec3) -> bool {
         self.known(incident, outgoing) == Known::Measured
     }

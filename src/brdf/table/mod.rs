@@ -24,6 +24,7 @@ mod marginal;
 mod nodes;
 mod patches;
 mod points;
+mod resample;
 mod sampled;
 pub mod specular;
 
@@ -37,6 +38,7 @@ pub use half_angle::{HalfAngle, Resolution};
 pub use nodes::Axis;
 pub use patches::{Patches, Ring, Side};
 pub use points::Points;
+pub use resample::resample;
 pub use sampled::SampledTable;
 pub use specular::Specular;
 

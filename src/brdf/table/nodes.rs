@@ -1,7 +1,5 @@
 //! What a table consists of: its kind, its axes, its nodes.
 
-use glam::DVec3;
-
 use super::Table;
 use crate::brdf::coordinates::Parameterisation;
 
@@ -74,38 +72,12 @@ impl Table {
         }
     }
 
-    /// Calls `f` with ω_i, ω_o and the values of every node above the horizon, NaN where it is missing: the middles of bins and
-    /// patches, the nodes of grids, the points. The samples of an adaptive table have no directions of their own; it is asked at its
-    /// tabulated ω_i and at θ_o from 0 to 85° by 5°, φ_o by 15°.
-    pub fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
-        let mut above = |i: DVec3, o: DVec3, values: &[f64]| {
-            if i.z > 0.0 && o.z > 0.0 {
-                f(i, o, values);
-            }
-        };
-        match self {
-            Self::HalfAngle(t) => {
-                let mut values = vec![0.0; t.channels().len()];
-                for bin in 0..t.resolution().bins() {
-                    let (i, o) = t.resolution().centre(bin).directions();
-                    values.iter_mut().zip(t.bin(bin)).for_each(|(v, b)| *v = f64::from(*b));
-                    above(i, o, &values);
-                }
-            }
-            Self::Angular(t) => t.visit(&mut above),
-            Self::Specular(t) => t.visit(&mut above),
-            Self::Patches(t) => t.visit(&mut above),
-            Self::Points(t) => t.iter().for_each(|(i, o, v)| above(i, o, v)),
-            Self::Adaptive(t) => t.visit(&mut above),
-        }
-    }
-
     /// Smallest and largest value of the nodes in 1/sr, over all channels; `None` where all are missing.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        self.visit(&mut |_, _, values| {
-            for v in values.iter().filter(|v| !v.is_nan()) {
+        self.entries(&mut |entry| {
+            for v in entry.values {
                 range = [range[0].min(*v), range[1].max(*v)];
             }
         });

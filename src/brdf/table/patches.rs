@@ -14,7 +14,7 @@ use super::axis::zone;
 use super::channels::Mix;
 use super::nodes::Axis;
 use super::{Channel, Entry, Error, Known};
-use crate::geometry::direction::{from_angles, from_degrees, phi, theta};
+use crate::geometry::direction::{from_angles, phi, theta};
 
 /// A ring of equal patches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -187,19 +187,5 @@ impl Patches {
         let patches = self.starts[self.rings.len()];
         let last = self.rings.last().map_or(0.0, |r| r.upper_deg);
         ["incident patch", "outgoing patch"].map(|name| Axis::new(name, patches, 0.0, last)).to_vec()
-    }
-
-    /// Calls `f` with the middles of every pair of patches and the values.
-    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
-        let mut middles = Vec::new();
-        for ring in &self.rings {
-            // A cap is seen from its pole.
-            let theta = if ring.sectors == 1 { ring.lower_deg } else { 0.5 * (ring.lower_deg + ring.upper_deg) };
-            middles.extend((0..ring.sectors).map(|s| from_degrees(theta, 360.0 * s as f64 / ring.sectors as f64)));
-        }
-        for (index, element) in self.values.chunks_exact(self.channels.len()).enumerate() {
-            let incident = middles[index % middles.len()];
-            f(DVec3::new(-incident.x, -incident.y, incident.z), middles[index / middles.len()], element);
-        }
     }
 }

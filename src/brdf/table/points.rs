@@ -13,9 +13,12 @@ use super::channels::Mix;
 use super::kd_tree::{KdTree, Key};
 use super::{Channel, Entry, Error, Known};
 use crate::brdf::coordinates::{HalfDiff, Parameterisation};
+use crate::geometry::direction::{phi, theta};
 
 /// What is nearer is the same place: rounding of angles that were written with ten digits.
 const SAME: f64 = 1e-9;
+/// More directions of incidence than an instrument is set to by hand or motor, one by one.
+const FEW: usize = 64;
 
 /// A table of points.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,6 +112,28 @@ impl Points {
         for (incident, outgoing, values) in self.iter().filter(|(i, o, _)| i.z > 0.0 && o.z > 0.0) {
             visit(&Entry { incident, outgoing, measure: 1.0, values });
         }
+    }
+
+    /// `[θ_i, φ_i]` in degrees of the points, φ_i being 0 in an isotropic table; `None` where they are many, as in coordinates of the half
+    /// vector.
+    pub(super) fn incidences_deg(&self) -> Option<Vec<[f64; 2]>> {
+        use Parameterisation::{Cartesian, LightViewProjected, Spherical, ViewLightAzimuth};
+        if !matches!(self.parameterisation, ViewLightAzimuth | LightViewProjected | Spherical | Cartesian) {
+            return None;
+        }
+        let rounded = |rad: f64| (rad.to_degrees() * 1e6).round() / 1e6;
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        for (incident, _) in self.directions.iter().filter(|(i, o)| i.z > 0.0 && o.z > 0.0) {
+            let lit = [rounded(theta(*incident)), if self.is_isotropic() { 0.0 } else { rounded(phi(*incident)) }];
+            if !found.contains(&lit) {
+                if found.len() == FEW {
+                    return None;
+                }
+                found.push(lit);
+            }
+        }
+        found.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
+        (!found.is_empty()).then_some(found)
     }
 
     /// Writes the value at two directions.

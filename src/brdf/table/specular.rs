@@ -18,7 +18,7 @@ use super::axis::{Place, cell, check, locate, zone};
 use super::channels::Mix;
 use super::nodes::Axis;
 use super::{Channel, Entry, Error, Known, blend};
-use crate::geometry::direction::{from_degrees, phi, theta};
+use crate::geometry::direction::{phi, theta};
 
 /// A table over (rotation, θ_i, α, β).
 #[derive(Debug, Clone, PartialEq)]
@@ -253,26 +253,6 @@ impl Specular {
             Axis::of("α", &self.azimuths_deg),
             Axis::of("β", &self.radials_deg),
         ]
-    }
-
-    /// Calls `f` with the directions and values of every node.
-    pub(super) fn visit(&self, f: &mut dyn FnMut(DVec3, DVec3, &[f64])) {
-        let mut nodes = self.values.chunks_exact(self.channels.len());
-        for (rotation, incidence) in
-            self.rotations_deg.iter().flat_map(|r| self.incidences_deg.iter().map(move |i| (*r, *i)))
-        {
-            let incident = from_degrees(incidence, rotation);
-            let [mirror, towards, across] = mirror_frame(incident, rotation.to_radians());
-            for (azimuth, radial) in
-                self.azimuths_deg.iter().flat_map(|a| self.radials_deg.iter().map(move |r| (*a, *r)))
-            {
-                let about = from_degrees(radial, azimuth);
-                let outgoing = towards * about.x + across * about.y + mirror * about.z;
-                if let Some(node) = nodes.next() {
-                    f(incident, outgoing, node);
-                }
-            }
-        }
     }
 }
 

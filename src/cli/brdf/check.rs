@@ -21,6 +21,9 @@ const WAVELENGTHS_NM: [f64; 7] = [400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.
 
 /// Materials, limits and the form of the answer.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  photopic brdf check 'phong(kd=0.1, ks=1, n=20, form=classic)'
+  photopic brdf check gold.binary --reciprocity 0.2 --json")]
 pub(in crate::cli) struct CheckArgs {
     #[command(flatten)]
     materials: MaterialArgs,
@@ -43,6 +46,9 @@ pub(in crate::cli) struct CheckArgs {
 
 /// Materials, geometry of the reflectances and the form of the answer.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  photopic brdf info 'ggx(alpha=0.1, medium=Au)' -w 450,550,650
+  photopic brdf info blinds.xml paint.bsdf")]
 pub(in crate::cli) struct InfoArgs {
     #[command(flatten)]
     materials: MaterialArgs,

@@ -21,6 +21,9 @@ const MOST_DIRECTIONS: usize = 4_000_000;
 /// Materials, directions and the form of the answer. Angles are lists `0,30,60` or ranges `0:80:10`, in degrees; every
 /// combination is evaluated.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  photopic brdf eval 'lambert(reflectance=0.5)' --theta-i 0:60:30 --csv
+  photopic brdf eval gold.binary --theta-i 45 --theta-o 0:85:5 --channels R")]
 pub(in crate::cli) struct EvalArgs {
     #[command(flatten)]
     materials: MaterialArgs,

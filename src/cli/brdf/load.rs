@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use crate::brdf::Brdf;
 use crate::brdf::description::{Bands, Error, Material, toml};
 use crate::brdf::format::{self, File, Format};
-use crate::brdf::table::Channel;
+use crate::brdf::table::{Channel, Resolution, Table};
 use crate::finding::{Checked, Finding};
 use crate::report::envelope::Input;
 
@@ -116,6 +116,24 @@ impl FromStr for Numbers {
             }
         }
         Ok(Self(out))
+    }
+}
+
+/// Numbers of bins as a user writes them: `90x90x180`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bins(pub Resolution);
+
+impl FromStr for Bins {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<usize>> = text.split(['x', '×', ',']).map(|n| n.trim().parse().ok()).collect();
+        match numbers.as_deref() {
+            Some(&[theta_h @ 1..=180, theta_d @ 1..=180, phi_d @ 1..=360]) => {
+                Ok(Self(Resolution { theta_h, theta_d, phi_d }))
+            }
+            _ => Err(format!("found `{text}`; expected bins in θh, θd and φd such as 90x90x180, at most 180x180x360")),
+        }
     }
 }
 
@@ -241,14 +259,19 @@ pub(super) fn prepare(path: &str, subject: &Subject, wanted: &BandArgs, default_
             Ok(Ready { bands, brdf })
         }
         Subject::Measured(file) => {
-            let is_spectral = file.table.channels().iter().all(|c| matches!(c, Channel::Wavelength(_)));
-            let table = match (&wanted.channels, &wanted.wavelength) {
-                (Some(names), _) => file.table.of_channels(names),
-                (_, Some(nm)) if is_spectral => file.table.at_wavelengths(&nm.0),
-                _ => Ok(file.table.clone()),
-            };
-            let table = table.map_err(|e| format!("{path}: {e}"))?;
+            let table = on_bands(path, &file.table, wanted)?;
             Ok(Ready { bands: table.channels().to_vec(), brdf: Box::new(table) })
         }
     }
+}
+
+/// A table on the bands asked for, else on its own. Channels that are no wavelengths stay as they are.
+pub(super) fn on_bands(path: &str, table: &Table, wanted: &BandArgs) -> Result<Table, String> {
+    let is_spectral = table.channels().iter().all(|c| matches!(c, Channel::Wavelength(_)));
+    let chosen = match (&wanted.channels, &wanted.wavelength) {
+        (Some(names), _) => table.of_channels(names),
+        (_, Some(nm)) if is_spectral => table.at_wavelengths(&nm.0),
+        _ => Ok(table.clone()),
+    };
+    chosen.map_err(|e| format!("{path}: {e}"))
 }

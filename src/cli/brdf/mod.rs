@@ -2,6 +2,7 @@
 
 mod check;
 mod compress;
+mod convert;
 mod eval;
 mod fit;
 mod load;
@@ -20,6 +21,8 @@ pub(super) enum BrdfCommand {
     Check(check::CheckArgs),
     /// Values at lists of directions.
     Eval(eval::EvalArgs),
+    /// Tables and models as MERL, ALTA or CSV files.
+    Convert(convert::ConvertArgs),
     /// Models fitted to measured tables, with standard errors, and compared.
     Fit(fit::FitArgs),
     /// Lobes, albedo and a lit sphere as SVG or PNG.
@@ -34,6 +37,7 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Info(a) => check::info(&a, talk),
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
+        BrdfCommand::Convert(a) => convert::convert(&a, talk),
         BrdfCommand::Fit(a) => fit::fit(&a, talk),
         BrdfCommand::Plot(a) => plot::plot(&a, talk),
         BrdfCommand::Compress(command) => compress::run(command, talk),

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::brdf::Brdf;
-use crate::brdf::audit::{Audit, Geometry, Limits, Worst};
+use crate::brdf::audit::{ALBEDO_DEG, Audit, Geometry, Limits, Worst};
 use crate::brdf::description::Material;
 use crate::brdf::format::File;
 use crate::brdf::reflectance::{Beam, Cone, between};
@@ -124,10 +124,13 @@ pub fn check(p: &Prepared<'_>, audit: &Audit) -> Map<String, Value> {
         out.insert("most_negative_at_deg".to_owned(), directions(&w.at));
     }
     out.insert("measured_fraction".to_owned(), audit.measured_fraction.into());
+    if let Some(incidences) = audit.incidences {
+        out.insert("incidences".to_owned(), incidences.into());
+    }
     out.insert("passes".to_owned(), audit.passes.into());
-    let albedo = audit.albedo.iter().map(
-        |a| json!({"theta_i_deg": a.theta_i_deg, "phi_i_deg": a.phi_i_deg, "albedo": a.reflectance, "error": a.error}),
-    );
+    let albedo = audit.albedo.iter().map(|a| {
+        json!({"theta_i_deg": a.theta_i_deg, "phi_i_deg": a.phi_i_deg, "albedo": a.reflectance, "albedo_measured": a.measured, "error": a.error})
+    });
     out.insert("albedo".to_owned(), albedo.collect::<Vec<_>>().into());
     out
 }
@@ -143,7 +146,7 @@ pub fn check_findings(p: &Prepared<'_>, audit: &Audit, limits: &Limits) -> Vec<F
     }
     if let Some((a, band, value)) = audit.largest_albedo().filter(|(a, _, v)| v - a.error > limits.albedo + 1e-12) {
         let (value, band) = (significant(value, 4), p.band(band));
-        let first = audit.albedo.iter().find(|a| a.reflectance.iter().any(|v| *v - a.error > limits.albedo + 1e-12));
+        let first = audit.albedo.iter().find(|a| a.measured.iter().any(|v| *v - a.error > limits.albedo + 1e-12));
         let from = first.map_or(0.0, |a| a.theta_i_deg);
         let message = format!(
             "more light leaves than arrives: albedo {value} at θi {}° ({band}), above {} from {from}°",
@@ -170,10 +173,21 @@ pub fn check_findings(p: &Prepared<'_>, audit: &Audit, limits: &Limits) -> Vec<F
         let part = significant(100.0 * audit.measured_fraction, 4);
         out.push(Finding::warning(
             "B005",
-            format!("{part} % of the projected hemisphere was measured; the rest is the table's guess"),
+            format!(
+                "{part} % of the projected hemisphere was measured{}; the rest is the table's guess",
+                at_own_angles(audit)
+            ),
         ));
     }
     out
+}
+
+/// Where the figures of a table hold that was lit at few angles.
+fn at_own_angles(audit: &Audit) -> String {
+    audit.incidences.map_or(String::new(), |n| match n {
+        1 => " at the one direction of incidence of the table".to_owned(),
+        n => format!(" at the {n} directions of incidence of the table"),
+    })
 }
 
 /// An audit for people.
@@ -200,13 +214,18 @@ pub fn check_text(heading: &str, p: &Prepared<'_>, audit: &Audit, findings: &[Fi
             p.band(band),
             significant(a.error, 1)
         );
+        if audit.measured_fraction < 1.0 {
+            let guessed = significant(a.reflectance[band], DIGITS);
+            let _ = writeln!(out, "    over what was measured; with the table's guess elsewhere {guessed}");
+        }
     }
     let _ =
         writeln!(out, "  negative                      {} of the directions", significant(audit.negative_fraction, 3));
     let _ = writeln!(
         out,
-        "  measured                      {} of the projected hemisphere",
-        significant(audit.measured_fraction, 4)
+        "  measured                      {} of the projected hemisphere{}",
+        significant(audit.measured_fraction, 4),
+        at_own_angles(audit)
     );
     out
 }
@@ -319,10 +338,11 @@ pub fn info_text(heading: &str, p: &Prepared<'_>, object: &Map<String, Value>) -
         if shown.is_empty() { "–".to_owned() } else { shown.join("  ") }
     };
     let _ = writeln!(out, "  albedo at θi: {}", p.band_names());
-    for row in object.get("albedo").and_then(Value::as_array).into_iter().flatten() {
+    let rows = object.get("albedo").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    for row in rows {
         let theta = row.get("theta_i_deg").and_then(Value::as_f64).unwrap_or_default();
-        // Every fifteen degrees, and the steep end.
-        if theta % 15.0 == 0.0 || theta > 84.0 {
+        // Every fifteen degrees, and the steep end; of a table's own angles all.
+        if theta % 15.0 == 0.0 || theta > 84.0 || rows.len() != ALBEDO_DEG.len() {
             let _ = writeln!(out, "    {theta:>4}°  {}", numbers(row.get("albedo")));
         }
     }

@@ -19,9 +19,8 @@ use crate::report::brdf_compress::{self as report, Encoded};
 use crate::report::envelope::{Envelope, Input};
 
 /// A material, a basis and the form of the answer.
-///
-/// Example: photopic brdf compress encode gold.binary --basis merl.basis -k 10 --csv -o gold.csv
 #[derive(Debug, Args)]
+#[command(after_help = "Example: photopic brdf compress encode gold.binary --basis merl.basis -k 10 --csv -o gold.csv")]
 pub(in crate::cli) struct EncodeArgs {
     /// The material: a MERL binary or another isotropic table, a description, a TOML file, or `-`.
     material: String,
@@ -87,9 +86,8 @@ pub(super) fn encode(arguments: &EncodeArgs, talk: Talk) -> Result<(), Failure> 
 }
 
 /// Coefficients, a basis, and where the table goes.
-///
-/// Example: photopic brdf compress decode gold.csv --basis merl.basis -o gold.binary
 #[derive(Debug, Args)]
+#[command(after_help = "Example: photopic brdf compress decode gold.csv --basis merl.basis -o gold.binary")]
 pub(in crate::cli) struct DecodeArgs {
     /// The coefficients: the CSV of `brdf compress encode`, or `-`.
     coefficients: String,

@@ -21,9 +21,8 @@ use crate::report::envelope::Envelope;
 const MOST: u64 = 300;
 
 /// The set, how it is divided, and the form of the answer.
-///
-/// Example: photopic brdf compress error *.binary --resolution 90x90x180 --plot error.svg
 #[derive(Debug, Args)]
+#[command(after_help = "Example: photopic brdf compress error *.binary --resolution 90x90x180 --plot error.svg")]
 pub(in crate::cli) struct ErrorArgs {
     #[command(flatten)]
     set: SetArgs,

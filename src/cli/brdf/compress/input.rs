@@ -3,34 +3,14 @@
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
-use std::str::FromStr;
 
 use sha2::{Digest, Sha256};
 
-use crate::brdf::compress::resample;
 use crate::brdf::description::{Bands, Material, toml};
 use crate::brdf::format;
-use crate::brdf::table::{Channel, HalfAngle, Known, Resolution, Table};
+use crate::brdf::table::{Channel, HalfAngle, Known, Resolution, Table, resample};
 use crate::finding::{Finding, Location};
 use crate::report::envelope::Input;
-
-/// Numbers of bins as a user writes them: `90x90x180`.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bins(pub Resolution);
-
-impl FromStr for Bins {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Option<Vec<usize>> = text.split(['x', '×', ',']).map(|n| n.trim().parse().ok()).collect();
-        match numbers.as_deref() {
-            Some(&[theta_h @ 1..=180, theta_d @ 1..=180, phi_d @ 1..=360]) => {
-                Ok(Self(Resolution { theta_h, theta_d, phi_d }))
-            }
-            _ => Err(format!("found `{text}`; expected bins in θh, θd and φd such as 90x90x180, at most 180x180x360")),
-        }
-    }
-}
 
 /// A material read.
 pub(super) struct Loaded {

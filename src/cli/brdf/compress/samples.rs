@@ -20,11 +20,10 @@ use crate::report::brdf_compress::{self as report, Encoded};
 use crate::report::envelope::{Envelope, Input};
 
 /// A basis, and how many directions.
-///
-/// Example: photopic brdf compress directions --basis merl.basis -n 10 --csv -o measure.csv
-///
-/// Measure there, add the columns `channel` and `value` (a row for each channel), and give the file to `brdf compress infer`.
 #[derive(Debug, Args)]
+#[command(after_help = "Example: photopic brdf compress directions --basis merl.basis -n 10 --csv -o measure.csv
+
+Measure there, add the columns `channel` and `value` (a row for each channel), and give the file to `brdf compress infer`.")]
 pub(in crate::cli) struct DirectionsArgs {
     /// The basis, from `brdf compress train`.
     #[arg(short, long, value_name = "FILE")]
@@ -71,9 +70,10 @@ pub(super) fn directions(arguments: &DirectionsArgs, talk: Talk) -> Result<(), F
 }
 
 /// Values measured in a few directions, a basis, and where the table goes.
-///
-/// Example: photopic brdf compress infer measured.csv --basis merl.basis -o paint.binary --mask paint.mask
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Example: photopic brdf compress infer measured.csv --basis merl.basis -o paint.binary --mask paint.mask"
+)]
 pub(in crate::cli) struct InferArgs {
     /// The measured values: a CSV with the columns theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg, channel and value (1/sr), or another
     /// list of points, or `-`. They keep their values in the table; all else is inferred.

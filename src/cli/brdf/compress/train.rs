@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::input::{Bins, Loaded, load};
+use super::input::{Loaded, load};
 use super::table_of;
 use crate::brdf::compress::Collection;
 use crate::brdf::compress::file::{BasisFile, Source};
-use crate::cli::brdf::load::Numbers;
+use crate::cli::brdf::load::{Bins, Numbers};
 use crate::cli::notes::Notes;
 use crate::cli::output::{Sink, Whole, overwrites, same_file};
 use crate::cli::{Failure, Talk};
@@ -67,9 +67,8 @@ impl SetArgs {
 }
 
 /// The set, and what is made of it.
-///
-/// Example: photopic brdf compress train *.binary -o merl.basis
 #[derive(Debug, Args)]
+#[command(after_help = "Example: photopic brdf compress train *.binary -o merl.basis")]
 pub(in crate::cli) struct TrainArgs {
     #[command(flatten)]
     set: SetArgs,

@@ -1,10 +1,9 @@
-//! Materials of any kind on the bins of a resolution.
+//! Materials of any kind in bins of half and difference angles.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Grid;
-use crate::brdf::table::{Channel, HalfAngle, Resolution};
+use super::{Channel, HalfAngle, Resolution};
 
 /// The table of what `at` gives in the middle of every bin that is above the horizon: it writes the values in 1/sr, one per channel, of
 /// two directions, ω_i first, and tells whether they are known. The other bins are missing.
@@ -18,18 +17,15 @@ pub fn resample(
     at: impl Fn(DVec3, DVec3, &mut [f64]) -> bool + Sync,
 ) -> HalfAngle {
     let n = channels.len();
-    let grid = Grid::new(resolution);
     let mut values = vec![f32::NAN; n * resolution.bins()];
-    let slow = n * resolution.theta_d * resolution.phi_d;
-    values.par_chunks_mut(slow).enumerate().for_each(|(h, values)| {
-        let of_angle = |h: usize| grid.bins().partition_point(|b| *b < h * slow / n);
+    let layer = resolution.theta_d * resolution.phi_d;
+    values.par_chunks_mut(n * layer).enumerate().for_each(|(h, values)| {
         let mut found = vec![0.0; n];
-        for i in of_angle(h)..of_angle(h + 1) {
-            let (incident, outgoing) = grid.directions(i);
-            if at(incident, outgoing, &mut found) {
-                let place = (grid.bins()[i] - h * slow / n) * n;
+        for (i, bin) in values.chunks_exact_mut(n).enumerate() {
+            let (incident, outgoing) = resolution.centre(h * layer + i).directions();
+            if incident.z > 0.0 && outgoing.z > 0.0 && at(incident, outgoing, &mut found) {
                 #[expect(clippy::cast_possible_truncation, reason = "tables are kept in single precision")]
-                values[place..][..n].iter_mut().zip(&found).for_each(|(v, f)| *v = *f as f32);
+                bin.iter_mut().zip(&found).for_each(|(v, f)| *v = *f as f32);
             }
         }
     });
