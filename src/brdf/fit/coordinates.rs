@@ -131,14 +131,20 @@ impl Coordinates {
         (low, high)
     }
 
-    /// A place to start from; number 0 is the middle of the usual ranges. A start that was given holds for all of them.
+    /// A place to start from; number 0 is the middle of the usual ranges, number 1 the simplest material: what can be nothing, is
+    /// (a lobe's weight, a spread of slopes), so that a model finds at least what the models in it find. A start that was given
+    /// holds for all of them.
     pub(super) fn start(&self, number: u64) -> Vec<f64> {
         let mut random = Stream::new(START_SEED, number);
         let drawn: Vec<f64> = (self.columns.iter())
             .map(|c| {
                 let (a, b) = (c.inside(c.usual.0), c.inside(c.usual.1));
-                let share = if number == 0 { 0.5 } else { random.uniform() };
-                c.start.map_or(a + share * (b - a), |s| c.inside(s))
+                let share = if number < 2 { 0.5 } else { random.uniform() };
+                match (c.start, c.scale) {
+                    (Some(given), _) => c.inside(given),
+                    (None, Scale::Linear) if number == 1 => c.low,
+                    (None, _) => a + share * (b - a),
+                }
             })
             .collect();
         let mut out = vec![0.0; self.count];
