@@ -1,9 +1,12 @@
-//! From BRDFs to panels: lobes in the plane of incidence, albedo over angle, a lit sphere, the lobe in space.
+//! From BRDFs to panels: lobes in the plane of incidence, albedo over angle, a lit sphere, the lobe in space, MERL's slice.
+
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec3, dvec3};
 
 use crate::brdf::Brdf;
 use crate::brdf::audit::ALBEDO_DEG;
+use crate::brdf::coordinates::HalfDiff;
 use crate::colorimetry::observer::Observer;
 use crate::colorimetry::rgb;
 use crate::geometry::direction::{from_degrees, tangents};
@@ -162,7 +165,7 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         let (low, high) = (ALBEDO_DEG[above - 1], ALBEDO_DEG[above]);
         let share = ((theta - low) / (high - low)).min(1.0);
         for (v, (a, b)) in values.iter_mut().zip(ambient[above - 1].iter().zip(&ambient[above])) {
-            *v = *v * incident.z.max(0.0) * std::f64::consts::PI + 0.12 * (a + share * (b - a));
+            *v = *v * incident.z.max(0.0) * PI + 0.12 * (a + share * (b - a));
         }
         pixels.extend(tint.pixel(&values, 0.9));
     }
@@ -173,6 +176,39 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         caption: "a small lamp, and a little light from everywhere".to_owned(),
     }
 }
+
+/// The slice of Burley's picture of MERL materials (S. McAuley, S. Hill et al. (eds.), "Practical physically based shading", SIGGRAPH
+/// 2012 course): θ_h to the right, θ_d upwards, both 0° to 90°, at φ_d = 90°. Highlights stand at the left edge, Fresnel's rise at the
+/// top, retro-reflection at the bottom, the diffuse part in the middle.
+///
+/// π f is drawn, encoded as sRGB: a white diffuser is white, what is brighter is cut. Places that were not measured have
+/// [`UNMEASURED`].
+#[must_use]
+pub fn slice_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
+    const SIDE: u32 = 180;
+    let mut values = vec![0.0; brdf.bands()];
+    let mut pixels = Vec::with_capacity(3 * (SIDE * SIDE) as usize);
+    for i in 0..SIDE * SIDE {
+        let angle = |n: u32| (f64::from(n) + 0.5) / f64::from(SIDE) * FRAC_PI_2;
+        let (theta_h, theta_d) = (angle(i % SIDE), angle(SIDE - 1 - i / SIDE));
+        let (incident, outgoing) = HalfDiff { theta_h, phi_h: 0.0, theta_d, phi_d: FRAC_PI_2 }.directions();
+        if incident.z <= 0.0 || outgoing.z <= 0.0 || !brdf.is_measured(incident, outgoing) {
+            pixels.extend(UNMEASURED);
+            continue;
+        }
+        brdf.evaluate(incident, outgoing, &mut values);
+        pixels.extend(tint.pixel(&values, PI));
+    }
+    RasterPanel {
+        title: "slice at φd = 90°".to_owned(),
+        side: SIDE,
+        pixels,
+        caption: "right: θh 0° to 90°; up: θd 0° to 90°; white is π f = 1".to_owned(),
+    }
+}
+
+/// The colour of places that were not measured, or lie below the horizon.
+pub const UNMEASURED: [u8; 3] = [214, 214, 236];
 
 /// The lobe of one band in space, radius ∝ the cube root of the value: a needle on a broad foot shows both.
 #[must_use]
@@ -200,5 +236,23 @@ pub fn surface_panel(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> SurfaceP
         rings,
         light: incident.to_array(),
         caption: "radius: cube root of the BRDF, relative to the largest".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brdf::lambert::Lambert;
+
+    #[test]
+    fn the_slice_of_a_diffuser_is_one_grey() {
+        let lambert = Lambert::new(vec![0.5; 3]).expect("a reflectance");
+        let panel = slice_panel(&lambert, &Tint::of_channels(3));
+        // IEC 61966-2-1: 0.5 is encoded as 187.5 of 255 (1.055 · 0.5^(1/2.4) − 0.055 = 0.73536).
+        let (all, _) = panel.pixels.as_chunks::<3>();
+        assert!(all.iter().all(|p| *p == [188; 3] || *p == UNMEASURED));
+        let at = |x: usize, y: usize| all[y * panel.side as usize + x];
+        // At φ_d = 90° both directions have the height cosθ_h cosθ_d: nothing lies below the horizon.
+        assert_eq!([at(0, 0), at(179, 0), at(0, 179), at(179, 179), at(90, 90)], [[188; 3]; 5]);
     }
 }

@@ -1,18 +1,19 @@
-//! `brdf plot`: lobes, albedo, a lit sphere.
+//! `brdf plot`: lobes, albedo, a lit sphere, MERL's slice.
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::load::{BandArgs, MaterialArgs, Numbers, Ready, Subject, load, prepare};
+use crate::brdf::Brdf;
 use crate::brdf::table::Channel;
 use crate::cli::notes::Notes;
 use crate::cli::output::write_file;
 use crate::cli::{Failure, Talk};
-use crate::plot::brdf::{Tint, albedo_panel, lobe_panel, log_panel, sphere_panel, surface_panel};
-use crate::plot::{Format, Panel, draw};
+use crate::plot::brdf::{Tint, albedo_panel, lobe_panel, log_panel, slice_panel, sphere_panel, surface_panel};
+use crate::plot::{Format, Panel, RasterPanel, draw};
 
-/// Wavelengths of the sphere's colours, nm.
+/// Wavelengths of the colours of spheres and slices, nm.
 const SPHERE_NM: (f64, f64, u32) = (400.0, 700.0, 31);
 /// Lobes in one drawing at most.
 const MOST_LOBES: usize = 6;
@@ -32,6 +33,8 @@ enum PlotKind {
     Sphere,
     /// The lobe in space.
     Lobe,
+    /// Half angle across, difference angle up, at an azimuth of 90°: MERL's slice.
+    Slice,
 }
 
 /// A material and what to draw of it.
@@ -72,7 +75,7 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
     let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", loaded.name, names[band]), thetas, band));
     let log = || Panel::from(log_panel(brdf.as_ref(), thetas, band));
     let albedo = || Panel::from(albedo_panel(brdf.as_ref(), &names));
-    let sphere = || -> Result<Panel, Failure> {
+    let coloured = |panel: fn(&dyn Brdf, &Tint) -> RasterPanel| -> Result<Panel, Failure> {
         let (first, last, count) = SPHERE_NM;
         let step = (last - first) / f64::from(count - 1);
         let nm: Vec<f64> = (0..count).map(|i| first + step * f64::from(i)).collect();
@@ -81,22 +84,23 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
             Subject::Measured(_) => prepare(path, &read.value, wanted, &nm),
         };
         let Ready { bands, brdf } = ready.map_err(Failure::Message)?;
-        Ok(sphere_panel(brdf.as_ref(), &tint(&bands)).into())
+        Ok(panel(brdf.as_ref(), &tint(&bands)).into())
     };
     let middle = thetas[thetas.len() / 2];
     let panels = match arguments.kind {
         // Dirac lobes have no values for a logarithm.
         PlotKind::All if brdf.is_delta() => vec![polar(), albedo()],
-        PlotKind::All => vec![polar(), log(), albedo(), sphere()?],
+        PlotKind::All => vec![polar(), log(), albedo(), coloured(sphere_panel)?],
         PlotKind::Polar => vec![polar()],
-        PlotKind::Log | PlotKind::Lobe if brdf.is_delta() => {
+        PlotKind::Log | PlotKind::Lobe | PlotKind::Slice if brdf.is_delta() => {
             return Err(Failure::Message(format!(
                 "{path}: nothing but a Dirac lobe, which has no values; expected --kind polar, albedo or sphere"
             )));
         }
         PlotKind::Log => vec![log()],
         PlotKind::Albedo => vec![albedo()],
-        PlotKind::Sphere => vec![sphere()?],
+        PlotKind::Sphere => vec![coloured(sphere_panel)?],
+        PlotKind::Slice => vec![coloured(slice_panel)?],
         PlotKind::Lobe => vec![surface_panel(brdf.as_ref(), middle, band).into()],
     };
     let bytes = draw(&panels, None, format).map_err(|e| Failure::Message(e.to_string()))?;

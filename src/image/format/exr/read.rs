@@ -256,7 +256,8 @@ fn plane(name: &str, rgb: bool, xyz: bool) -> Meaning {
         "X" if xyz => Meaning::Tristimulus(0),
         "Y" if xyz => Meaning::Tristimulus(1),
         "Z" if xyz => Meaning::Tristimulus(2),
-        "Y" => Meaning::Photopic,
+        // Beside R, G, B nobody says what a Y is; their luminance comes from them.
+        "Y" if !rgb => Meaning::Photopic,
         "A" => Meaning::Alpha,
         _ => Meaning::Other,
     }
