@@ -203,7 +203,7 @@ pub fn slice_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         title: "slice at φd = 90°".to_owned(),
         side: SIDE,
         pixels,
-        caption: "right: θh 0° to 90°; up: θd 0° to 90°; white is π f = 1".to_owned(),
+        caption: "right: θh 0° to 90°; up: θd 0° to 90°; white is π f = 1; lilac: not measured".to_owned(),
     }
 }
 
