@@ -9,7 +9,7 @@
 //! A *column* is one channel of one material. [`Collection`] takes tables one by one and keeps the bins that all of them measured;
 //! [`Training`] maps the columns and has their Gram matrix (columns × columns: 100 tables of 4.4 M values need 1.3 GB for the
 //! columns and as much again for 300 components); [`Basis`] has components, takes coefficients from a column or from a few measured
-//! bins, and gives the column back, each bin marked as measured or inferred; [`file`] keeps it, with its grid; [`cross_validate`]
+//! bins, and gives the column back, each bin marked as measured or inferred; [`mod@file`] keeps it, with its grid; [`cross_validate`]
 //! tells how well columns come back that the set does not hold.
 //!
 //! The scale of errors is the mapping's own: rms over bins of ln((f̂ w + ε)/(f w + ε)).

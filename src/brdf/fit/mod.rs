@@ -17,7 +17,7 @@
 //!
 //! N is the number of values (places times bands), k that of the variables. Neither knows that a model may be wrong: where it misses the
 //! table by more than the noise, residuals of neighbours are alike, and both are too small. Derivatives by the parameters are carried
-//! over from those by the [coordinates] to first order. A parameter at a bound has no standard error, nor have those that the data
+//! over from those by the coordinates of the fit to first order. A parameter at a bound has no standard error, nor have those that the data
 //! cannot tell apart (JᵀWJ scaled to a unit diagonal with a condition beyond 1e10).
 //!
 //! **Criteria** for comparing models on the same values under the same measure, with a Gaussian likelihood of unknown variance:
