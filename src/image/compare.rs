@@ -12,6 +12,9 @@ use crate::colorimetry::difference::{ciede2000, lab};
 use crate::finding::Finding;
 use crate::math::order::Coarse;
 
+/// Samples read at a time: two images with their conversions hold several times as many.
+const AT_ONCE: usize = SAMPLES_AT_ONCE / 8;
+
 /// How far plane b is from plane a, which is the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Difference {
@@ -125,7 +128,7 @@ fn side_by_side(
     let whole = Region::rows(a.description(), 0, a.description().height);
     let (mut left, mut right) = (Vec::new(), Vec::new());
     let count = channels.0.len().max(1);
-    for piece in pieces(whole, a.block(), SAMPLES_AT_ONCE / (2 * count)) {
+    for piece in pieces(whole, a.block(), AT_ONCE / (2 * count)) {
         left.resize(piece.pixels() * channels.0.len(), 0.0);
         right.resize(piece.pixels() * channels.1.len(), 0.0);
         a.read(piece, channels.0, &mut left)?;
@@ -192,7 +195,7 @@ impl Source for Map<'_> {
         let show = self.show;
         let planes: &[usize] = if matches!(show, Show::Relative) { &[0] } else { &[0, 1, 2] };
         let mut samples = [const { Vec::new() }; 2];
-        for piece in pieces(region, self.a.block(), SAMPLES_AT_ONCE / (2 * planes.len())) {
+        for piece in pieces(region, self.a.block(), AT_ONCE / (2 * planes.len())) {
             for (samples, source) in samples.iter_mut().zip([&mut self.a, &mut self.b]) {
                 samples.resize(piece.pixels() * planes.len(), 0.0);
                 source.read(piece, planes, samples)?;
@@ -270,7 +273,7 @@ pub fn summary(source: &mut dyn Source, fractions: &[f64]) -> Result<Summary, Er
 fn plane(source: &mut dyn Source, mut each: impl FnMut(f32, [usize; 2])) -> Result<(), Error> {
     let whole = Region::rows(source.description(), 0, source.description().height);
     let mut samples = Vec::new();
-    for piece in pieces(whole, source.block(), SAMPLES_AT_ONCE) {
+    for piece in pieces(whole, source.block(), AT_ONCE) {
         samples.resize(piece.pixels(), 0.0);
         source.read(piece, &[0], &mut samples)?;
         for (i, value) in samples.iter().enumerate() {
