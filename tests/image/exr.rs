@@ -7,8 +7,9 @@ use exr::prelude::*;
 use photopic::colorimetry::{Observer, chromaticity};
 use photopic::image::format::exr::{self as ours, Depth};
 use photopic::image::{
-    Channel, Content, Converted, Description, Meaning, Memory, Plan, Region, Settings, Source, Target,
+    Channel, Content, Converted, Description, Meaning, Memory, Photometric, Plan, Region, Settings, Source, Target,
 };
+use photopic::photometry::luminous::Efficiency;
 use photopic::spectrum::Quantity;
 
 use crate::common::shared;
@@ -162,6 +163,24 @@ fn foreign(encoding: Encoding, half: bool, parts: bool) -> (Vec<u8>, impl Fn(usi
     let mut out = Cursor::new(Vec::new());
     image.write().to_buffered(&mut out).expect("the crate writes");
     (out.into_inner(), value)
+}
+
+#[test]
+fn a_y_beside_red_green_and_blue_is_not_their_luminance() {
+    let channel = |name: &str, value: f32| AnyChannel::new(name, FlatSamples::F32(vec![value]));
+    let channels = AnyChannels::sort(
+        [channel("R", 1.0), channel("G", 1.0), channel("B", 1.0), channel("Y", 7.0)].into_iter().collect(),
+    );
+    let layer = Layer::new((1, 1), LayerAttributes::named("all"), encodings()[0], channels);
+    let image = Image::from_layers(ImageAttributes::with_size(Vec2(1, 1)), vec![layer]);
+    let mut out = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut out).expect("the crate writes");
+    let (image, _) = load(out.get_ref());
+    let settings = Settings { white_luminance: Some(100.0), ..Settings::default() };
+    let way = Photometric::luminance(image.description(), Efficiency::Cie1924, &settings).expect("a plan").value;
+    let luminance = Memory::load(&mut way.of(image)).expect("memory");
+    // White by definition of --white-luminance; the weights of R, G, B sum to one but for rounding to f32.
+    assert!((luminance.samples()[0] - 100.0).abs() < 1e-5, "{:?}", luminance.samples());
 }
 
 fn encodings() -> Vec<Encoding> {

@@ -39,6 +39,12 @@ enum PlotKind {
 
 /// A material and what to draw of it.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  photopic brdf plot 'ggx(alpha=0.1, medium=Au)' -o gold.svg
+  photopic brdf plot paint.binary --kind slice -o paint.png
+
+A place that a table does not hold is drawn with the table's guess, but in a slice it has a colour of its own.")]
 pub(in crate::cli) struct PlotArgs {
     #[command(flatten)]
     materials: MaterialArgs,
