@@ -14,6 +14,7 @@ pub mod luminaire;
 pub mod math;
 pub mod photometry;
 pub mod plot;
+pub mod render;
 pub mod report;
 pub mod spectrum;
 pub mod tables;

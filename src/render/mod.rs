@@ -1,0 +1,26 @@
+//! Light transport: a scene of shapes, lights and materials in; per-wavelength radiance and the readings of virtual
+//! instruments with their standard errors out.
+//!
+//! Conventions of this module, beyond those of [`crate::geometry`]:
+//!
+//! - Lengths in metres, positions and directions in world coordinates (right-handed) unless a name says `local`. All geometry is `f64`.
+//! - A spectral value is a slice with one element per **band** ([`bands::Bands`]), in SI: radiance W/(m²·sr·nm) for a band that
+//!   samples a density, W/(m²·sr) for a band that is a line. One path carries all bands at once; nothing allocates per sample.
+//! - Directions in a surface's local frame (`material`) point away from it; z < 0 is the inside, z > 0 the side of the geometric normal.
+//! - Random numbers come from counters ([`sampler`]): any sample of any pixel is the same on any machine, in any order.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | [`bands`] | the wavelengths that a render carries |
+//! | [`ray`] | rays, crossings, surface points |
+//! | [`shape`] | closed-form shapes and meshes: crossing, area, sampling |
+//! | [`light`] | what lights the scene and is no shape: points, spots, luminaires, skies, pictures |
+//! | [`material`] | scattering at a surface, reflection and transmission |
+//! | [`sampler`] | well-spread random numbers |
+
+pub mod bands;
+pub mod light;
+pub mod material;
+pub mod ray;
+pub mod sampler;
+pub mod shape;

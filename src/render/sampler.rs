@@ -1,0 +1,112 @@
+//! Well-spread random numbers for paths: a function of a key and a counter, the same on any machine in any order.
+//!
+//! Sobol' points in four dimensions at a time, Owen-scrambled by hashing and shuffled differently for every key and every group of
+//! four ("padding"): a group is stratified in itself, groups are independent of one another.
+//!
+//! Reference: B. Burley, *Practical Hash-based Owen Scrambling*, JCGT 9(4) (2020).
+
+use crate::math::random::philox;
+
+/// Sobol' points are tabulated up to this index; later samples start again with another key.
+const EPOCH: u32 = 1 << 16;
+
+/// The numbers of one sample of one pixel or instrument.
+#[derive(Debug, Clone)]
+pub struct Sampler {
+    key: [u32; 2],
+    index: u64,
+    group: u32,
+}
+
+impl Sampler {
+    /// The numbers of sample `index` of the estimate `stream` (a pixel, an instrument's replicate) of the run `seed`.
+    #[must_use]
+    pub fn new(seed: u64, stream: u64, index: u64) -> Self {
+        let ([s0, s1], [a, b]) = (words(seed), words(stream));
+        let [k0, k1, ..] = philox([s0, s1], [a, b, 0x5A3D_71E5, 0]);
+        Self { key: [k0, k1], index, group: 0 }
+    }
+
+    /// The next group of four numbers, each uniform in [0, 1), in which the samples of a stream are stratified together.
+    pub fn four(&mut self) -> [f64; 4] {
+        let epoch = words(self.index / u64::from(EPOCH))[0];
+        // One block of random words keys the group; it does not depend on the sample.
+        let [seed, ..] = philox(self.key, [self.group, epoch, 0, 1]);
+        // The index within the epoch is below 2¹⁶ by construction.
+        let within = words(self.index % u64::from(EPOCH))[0];
+        let point = sobol_burley::sample_4d(within, 0, seed);
+        // Points are multiples of 2⁻²⁴: the bits below are filled at random, which keeps the strata and makes the mean exact.
+        let low = philox(self.key, [self.group, words(self.index)[0], words(self.index)[1], 2]);
+        self.group += 1;
+        std::array::from_fn(|i| f64::from(point[i]) + f64::from(low[i]) * (1.0 / (16_777_216.0 * 4_294_967_296.0)))
+    }
+}
+
+/// Low and high word.
+fn words(x: u64) -> [u32; 2] {
+    #[expect(clippy::cast_possible_truncation, reason = "the two halves are wanted")]
+    let halves = [x as u32, (x >> 32) as u32];
+    halves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Means of 4096 points: (0, m, s)-nets integrate products of linear functions far better than N^-1/2, and without bias over keys.
+    #[test]
+    fn every_dimension_and_product_is_unbiased_over_keys() {
+        let (keys, samples) = (256, 64);
+        let mut mean = [0.0; 4];
+        let mut product = 0.0;
+        for key in 0..keys {
+            for index in 0..samples {
+                let u = Sampler::new(1, key, index).four();
+                assert!(u.iter().all(|u| (0.0..1.0).contains(u)), "{u:?}");
+                for (m, u) in mean.iter_mut().zip(u) {
+                    *m += u;
+                }
+                product += u[0] * u[3];
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "16 384")]
+        let n = (keys * samples) as f64;
+        // Five standard errors of as many independent numbers, σ² = 1/12 and 7/144: stratified ones stay well inside.
+        for m in mean {
+            assert!((m / n - 0.5).abs() < 5.0 * (1.0 / 12.0 / n).sqrt(), "{m}");
+        }
+        assert!((product / n - 0.25).abs() < 5.0 * (7.0 / 144.0 / n).sqrt(), "{product}");
+    }
+
+    /// 2^k samples of a stream put one number into each of 2^k equal intervals, in every dimension of every group.
+    #[test]
+    fn samples_of_a_stream_are_stratified() {
+        for group in 0..5 {
+            let mut seen = [[0_u32; 256]; 4];
+            for index in 0..256 {
+                let mut sampler = Sampler::new(3, 77, index);
+                for _ in 0..group {
+                    sampler.four();
+                }
+                for (seen, u) in seen.iter_mut().zip(sampler.four()) {
+                    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 256")]
+                    let cell = (u * 256.0) as usize;
+                    seen[cell] += 1;
+                }
+            }
+            assert!(seen.iter().flatten().all(|&n| n == 1), "group {group}");
+        }
+    }
+
+    #[test]
+    fn later_epochs_groups_streams_and_seeds_differ() {
+        let first = Sampler::new(1, 1, 0).four();
+        assert_eq!(first, Sampler::new(1, 1, 0).four());
+        assert_ne!(first, Sampler::new(1, 1, u64::from(EPOCH)).four());
+        assert_ne!(first, Sampler::new(2, 1, 0).four());
+        assert_ne!(first, Sampler::new(1, 2, 0).four());
+        let mut sampler = Sampler::new(1, 1, 0);
+        sampler.four();
+        assert_ne!(first, sampler.four());
+    }
+}

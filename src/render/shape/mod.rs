@@ -1,0 +1,88 @@
+//! Shapes: where rays cross them, their area, and points and directions drawn on them.
+
+use glam::DVec3;
+
+use super::ray::{Crossing, Ray, SurfacePoint, Towards};
+
+/// An axis-aligned box, m. Empty where `min > max` in a coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Least coordinates.
+    pub min: DVec3,
+    /// Greatest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// Holds no point.
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The smallest box that holds the points.
+    #[must_use]
+    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| b.union(Self { min: p, max: p }))
+    }
+
+    /// Whether all coordinates are finite and it holds a point.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite() && self.min.cmple(self.max).all()
+    }
+}
+
+/// A surface in world coordinates. Its outside is where its normals point.
+///
+/// An implementation computes in `f64`, holds at every scale from 1e-8 m to 1e8 m (no absolute epsilon anywhere), and never
+/// returns a crossing outside of the open interval it was asked for.
+pub trait Shape: std::fmt::Debug + Send + Sync {
+    /// The box that holds it; infinite for an unbounded plane.
+    fn bounds(&self) -> Bounds;
+
+    /// The first crossing with `near < t < far`.
+    fn cross(&self, ray: &Ray, near: f64, far: f64) -> Option<Crossing>;
+
+    /// The surface at a crossing of this shape.
+    fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint;
+
+    /// Area, m²; infinite for an unbounded plane.
+    fn area(&self) -> f64;
+
+    /// A point, uniform over the area, from three uniform numbers (`u[0]` chooses the face).
+    fn sample_area(&self, u: [f64; 3]) -> SurfacePoint;
+
+    /// A direction from `from` towards the shape, with its density per solid angle; `None` where none can be given. The surface may be
+    /// seen from either side, and may hide itself.
+    ///
+    /// The default draws a point of the area: pdf = r² / (A |cosθ|).
+    fn sample_towards(&self, from: DVec3, u: [f64; 3]) -> Option<Towards> {
+        let point = self.sample_area(u);
+        let to = point.position - from;
+        let distance = to.length();
+        let direction = to / distance;
+        let cos = point.normal.dot(direction).abs();
+        let pdf = distance * (distance / (self.area() * cos));
+        (distance > 0.0 && cos > 0.0 && pdf.is_finite()).then_some(Towards { direction, distance, pdf, delta: false })
+    }
+
+    /// The density per solid angle with which [`Shape::sample_towards`] draws, from `from`, the direction in which `point` (a crossing
+    /// of this shape) lies.
+    fn pdf_towards(&self, from: DVec3, point: &SurfacePoint) -> f64 {
+        let to = point.position - from;
+        let distance = to.length();
+        let cos = (point.normal.dot(to) / distance).abs();
+        if cos > 0.0 { distance * (distance / (self.area() * cos)) } else { 0.0 }
+    }
+
+    /// ∫ cosθ⁺ dω over the directions from `from` in which the shape is seen, cosθ to `normal` and clipped at the horizon (projected
+    /// solid angle, sr), in closed form, for a shape that does not hide itself; `None` where no closed form is implemented.
+    fn projected_solid_angle(&self, from: DVec3, normal: DVec3) -> Option<f64> {
+        let _ = (from, normal);
+        None
+    }
+}
