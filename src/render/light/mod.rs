@@ -4,6 +4,8 @@
 
 use glam::DVec3;
 
+pub mod area;
+
 use super::ray::{Ray, Towards};
 
 /// A light without a surface. All slices have one element per band.
