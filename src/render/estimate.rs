@@ -89,6 +89,12 @@ impl Replicate {
         Self { sums: vec![0.0; bands], samples: 0, faults: Faults::default() }
     }
 
+    /// One as it was stored: sums per band, samples taken, faults.
+    #[must_use]
+    pub fn from_parts(sums: Vec<f64>, samples: u64, faults: Faults) -> Self {
+        Self { sums, samples, faults }
+    }
+
     /// Takes one more sample of the stream `stream`.
     pub fn add(&mut self, stream: u64, sample: &[f64]) {
         if self.faults.accept(sample, stream, self.samples) {
@@ -101,6 +107,18 @@ impl Replicate {
     #[must_use]
     pub fn samples(&self) -> u64 {
         self.samples
+    }
+
+    /// Σ over the samples, per band.
+    #[must_use]
+    pub fn sums(&self) -> &[f64] {
+        &self.sums
+    }
+
+    /// Samples that were left out.
+    #[must_use]
+    pub fn faults(&self) -> &Faults {
+        &self.faults
     }
 
     fn mean(&self, weights: &[f64]) -> f64 {

@@ -38,3 +38,4 @@ pub mod sampler;
 pub mod scene;
 pub mod sensor;
 pub mod shape;
+pub mod spool;
