@@ -104,17 +104,18 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let (mut mean, mut squares, mut count) = (0.0, 0.0, 0.0);
         for index in 0..self.samples {
             sampler.start(index);
-            let [u, v, ..] = sampler.four();
-            #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
-            let ray = self.camera.ray(x as f64 + u, y as f64 + v);
-            let sample = tracer.radiance(ray, &mut sampler);
-            if !faults.accept(sample, pixel, index) {
-                continue;
-            }
+            let [u, v, lens @ ..] = sampler.four();
             let mut luminance = 0.0;
-            for ((b, s), t) in bands.iter_mut().zip(sample).zip(self.tristimulus) {
-                *b += s;
-                luminance += s * t[1];
+            #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
+            if let Some(ray) = self.camera.ray(x as f64 + u, y as f64 + v, lens) {
+                let sample = tracer.radiance(ray, &mut sampler);
+                if !faults.accept(sample, pixel, index) {
+                    continue;
+                }
+                for ((b, s), t) in bands.iter_mut().zip(sample).zip(self.tristimulus) {
+                    *b += s;
+                    luminance += s * t[1];
+                }
             }
             count += 1.0;
             let deviation = luminance - mean;

@@ -86,7 +86,9 @@ pub enum Error {
     #[error("found no state of a render; expected a file that `photopic render` wrote with --checkpoint or --shard")]
     Format,
     /// It is the state of another render.
-    #[error("the state of another render (fingerprint {found}); expected {expected}: the same scene, settings and version")]
+    #[error(
+        "the state of another render (fingerprint {found}); expected {expected}: the same scene, settings and version"
+    )]
     Other {
         /// Fingerprint found.
         found: String,
@@ -306,10 +308,7 @@ mod tests {
             share: Share { index: 1, count: 3 },
             points: 2,
             bands: 2,
-            pictures: vec![
-                Extent { width: 2, height: 3, channels: 2 },
-                Extent { width: 1, height: 1, channels: 1 },
-            ],
+            pictures: vec![Extent { width: 2, height: 3, channels: 2 }, Extent { width: 1, height: 1, channels: 1 }],
         }
     }
 
