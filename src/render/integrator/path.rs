@@ -7,21 +7,38 @@
 //! q = min(1, max_b T_b)    probability of going on (Russian roulette)
 //! ```
 //!
+//! With [`Follow::Specular`] it is the ray tracing of T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23 (1980).
+//!
 //! References: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, thesis, Stanford 1997, ch. 9 and 10; J. Arvo &
 //! D. Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990.
 
 use glam::DVec3;
 
 use super::choice::Choice;
+use super::frame::Frame;
 use crate::render::material::{Material, Transport};
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 use crate::render::sensor::response::Response;
 
+/// After which vertices a path goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Follow {
+    /// All: global illumination.
+    #[default]
+    All,
+    /// Mirrors and glass only: direct light, seen also in reflections and through glass (Whitted's ray tracing, one branch drawn).
+    Specular,
+    /// None: direct light alone.
+    Nothing,
+}
+
 /// What a path may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
+    /// Which vertices it is followed through.
+    pub follow: Follow,
     /// The greatest number of edges from the instrument to the light; `None`: no path is cut, chance alone ends it.
     pub max_edges: Option<u32>,
     /// The edge from which on a path may be ended by chance.
@@ -30,7 +47,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { max_edges: None, roulette_from: 4 }
+        Self { follow: Follow::All, max_edges: None, roulette_from: 4 }
     }
 }
 
@@ -192,8 +209,14 @@ impl<'a> PathTracer<'a> {
             self.choice.prepare(self.scene, point.position);
             self.light(point, u, |incident, value| evaluate(material, incident, outgoing, value), &frame);
         }
+        if self.limits.follow == Follow::Nothing {
+            return None;
+        }
         let [u0, u1, u2, u3] = sampler.four();
         let drawn = material.sample(outgoing, [u0, u1, u2], Transport::Radiance, self.hero, &mut self.value)?;
+        if self.limits.follow == Follow::Specular && !drawn.delta {
+            return None;
+        }
         let direction = frame.world(drawn.direction);
         // A shading normal can send light through the surface: no light goes there.
         if direction.dot(point.normal) * drawn.direction.z <= 0.0 {
@@ -281,27 +304,4 @@ fn power_heuristic(p: f64, o: f64) -> f64 {
     }
     let ratio = o / p;
     1.0 / (1.0 + ratio * ratio)
-}
-
-/// An orthonormal frame: +z the normal, +x the tangent.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Frame {
-    x: DVec3,
-    y: DVec3,
-    z: DVec3,
-}
-
-impl Frame {
-    /// From a unit normal and a unit vector across it.
-    pub(crate) fn of(normal: DVec3, tangent: DVec3) -> Self {
-        Self { x: tangent, y: normal.cross(tangent), z: normal }
-    }
-
-    pub(crate) fn local(&self, d: DVec3) -> DVec3 {
-        DVec3::new(d.dot(self.x), d.dot(self.y), d.dot(self.z))
-    }
-
-    pub(crate) fn world(&self, d: DVec3) -> DVec3 {
-        d.x * self.x + d.y * self.y + d.z * self.z
-    }
 }
