@@ -1,5 +1,7 @@
 //! Readings of meters by path tracing: as many samples as asked for, or until they are sure enough.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::estimate::{Estimate, REPLICATES, Replicate, stream};
@@ -8,13 +10,23 @@ use super::ray::SurfacePoint;
 use super::sampler::Sampler;
 use super::scene::Scene;
 use super::sensor::response::Response;
+use super::shape::Shape;
 use super::spool::Share;
 
-/// A meter at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Where a meter reads.
+#[derive(Debug, Clone)]
+pub enum Place {
+    /// At a point, whose normal is the instrument's axis.
+    Point(SurfacePoint),
+    /// All over a shape, on its outside: the mean over its area.
+    Area(Arc<dyn Shape>),
+}
+
+/// A meter.
+#[derive(Debug, Clone)]
 pub struct Meter {
-    /// Where it stands: its normal is the instrument's axis.
-    pub point: SurfacePoint,
+    /// Where it is.
+    pub place: Place,
     /// What it makes of the radiance around it.
     pub response: Response,
 }
@@ -83,7 +95,14 @@ impl<'a> Board<'a> {
                 let mut sampler = Sampler::new(settings.seed, stream, 0);
                 while replicate.samples() < samples {
                     sampler.start(replicate.samples());
-                    replicate.add(stream, tracer.reading(&meter.point, &meter.response, &mut sampler));
+                    let point = match &meter.place {
+                        Place::Point(point) => *point,
+                        Place::Area(shape) => {
+                            let [u, v, w, _] = sampler.four();
+                            shape.sample_area([u, v, w])
+                        }
+                    };
+                    replicate.add(stream, tracer.reading(&point, &meter.response, &mut sampler));
                 }
             },
         );
