@@ -6,12 +6,15 @@
 //! |---|---|---|
 //! | [`point`] | isotropic point | one direction |
 //! | [`spot`] | cosine spot, hard cone | one direction |
+//! | [`goniometric`] | luminaire of a photometric file, a point or from its opening | one direction |
 //! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
 
 pub mod bounding;
+mod cells;
 #[cfg(test)]
 mod check;
 pub mod distant;
+pub mod goniometric;
 pub mod point;
 pub mod spot;
 
@@ -69,6 +72,9 @@ pub enum Error {
         /// Which.
         what: &'static str,
     },
+    /// A Type B table of one plane.
+    #[error("a Type B table of one plane, which does not say how far it reaches; expected two planes or more")]
+    OnePlane,
     /// Slices that do not belong together.
     #[error("{found} {what}; expected {expected}")]
     Count {
