@@ -1,5 +1,9 @@
 //! Shapes: where rays cross them, their area, and points and directions drawn on them.
 
+pub mod rounding;
+pub mod shear;
+pub mod triangle;
+
 use glam::DVec3;
 
 use super::ray::{Crossing, Ray, SurfacePoint, Towards};
