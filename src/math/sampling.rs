@@ -49,6 +49,16 @@ pub fn cosine_power_pdf(cos: f64, n: f64) -> f64 {
     if cos > 0.0 { (n + 1.0) / TAU * cos.powf(n) } else { 0.0 }
 }
 
+/// A direction within a cone about +z, uniform over its solid angle, from concentric squares by the equal-area projection of the
+/// sphere (J. H. Lambert 1772). The cone is given by h = 1 − cos τ of its half-angle τ, in (0, 2], which keeps its digits for
+/// needles: 2 sin²(τ/2). The hemisphere is h = 1, the sphere h = 2; the density is 1/(2π h).
+#[must_use]
+pub fn cone(u: [f64; 2], h: f64) -> DVec3 {
+    let p = disk(u);
+    let depth = p.length_squared() * h;
+    (p * (h * (2.0 - depth).max(0.0)).sqrt()).extend(1.0 - depth)
+}
+
 /// Splits a uniform number by a probability: whether it fell below, and the number stretched back to [0, 1).
 #[must_use]
 pub fn split(u: f64, probability: f64) -> (bool, f64) {
@@ -76,6 +86,10 @@ mod tests {
             let expected = (power + 1.0) / (power + 2.0);
             assert!((mean(&|u| cosine_power(u, power).z) - expected).abs() < 1e-4, "{power}");
         }
+        // The mean cosine of a cone is 1 − h/2.
+        for h in [2.0, 1.0, 0.1] {
+            assert!((mean(&|u| cone(u, h).z) - (1.0 - 0.5 * h)).abs() < 1e-4, "{h}");
+        }
         assert!(mean(&|u| disk(u).x).abs() < 1e-12 && mean(&|u| disk(u).y).abs() < 1e-12);
     }
 
@@ -86,6 +100,10 @@ mod tests {
             assert!((d.length() - 1.0).abs() < 1e-14, "{n}: {d}");
         }
         assert!(cosine_power([0.5, 0.0], 1e12).x > 1e-7);
+        // The rim of a cone of 1e-6 rad: sin τ, to all digits.
+        let rim = cone([1.0, 0.5], 2.0 * 0.5e-6_f64.sin().powi(2));
+        assert!((rim.x / 1e-6_f64.sin() - 1.0).abs() < 1e-14 && (rim.length() - 1.0).abs() < 1e-14, "{rim}");
+        assert!((cone([1.0, 0.3], 2.0).length() - 1.0).abs() < 1e-14);
     }
 
     #[test]

@@ -1,8 +1,26 @@
 //! Lights that are no surface of the scene: points, spots, luminaires, distant lights, skies, pictures of surroundings.
 //!
 //! (A surface that emits is a shape with an emission; the scene makes a light of it.)
+//!
+//! | file | light | seen from a point |
+//! |---|---|---|
+//! | [`point`] | isotropic point | one direction |
+//! | [`spot`] | cosine spot, hard cone | one direction |
+//! | [`goniometric`] | luminaire of a photometric file, a point or from its opening | one direction |
+//! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
+
+pub mod bounding;
+mod cells;
+#[cfg(test)]
+mod check;
+pub mod distant;
+pub mod goniometric;
+pub mod point;
+pub mod spot;
 
 use glam::DVec3;
+
+pub mod area;
 
 use super::ray::{Ray, Towards};
 
@@ -32,6 +50,101 @@ pub trait Light: std::fmt::Debug + Send + Sync {
     fn flux(&self, flux: &mut [f64]);
 
     /// A bound on the irradiance that it can make on a surface near `from`, summed over the bands, to choose between lights; any
-    /// positive figure is right, a close one makes less noise.
+    /// positive figure is right (infinite at a point light itself), a close one makes less noise.
     fn importance(&self, from: DVec3) -> f64;
+}
+
+/// Why a light was refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number out of its range.
+    #[error("{what} of {found}; expected {expected}")]
+    Value {
+        /// Which, with its article and unit.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+        /// Its range.
+        expected: &'static str,
+    },
+    /// A vector without direction.
+    #[error("{what} without a direction; expected a vector of some length")]
+    Direction {
+        /// Which.
+        what: &'static str,
+    },
+    /// A Type B table of one plane.
+    #[error("a Type B table of one plane, which does not say how far it reaches; expected two planes or more")]
+    OnePlane,
+    /// Slices that do not belong together.
+    #[error("{found} {what}; expected {expected}")]
+    Count {
+        /// What was counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        expected: usize,
+    },
+}
+
+/// A spectral value of a light as it keeps it: finite, not negative.
+fn sound(what: &'static str, values: &[f64]) -> Result<Box<[f64]>, Error> {
+    match values.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+        Some(found) => Err(Error::Value { what, found: *found, expected: "0 or more, finite" }),
+        None => Ok(values.into()),
+    }
+}
+
+/// A number of a light, where it is in its range.
+fn within(what: &'static str, found: f64, sound: bool, expected: &'static str) -> Result<f64, Error> {
+    if sound && found.is_finite() { Ok(found) } else { Err(Error::Value { what, found, expected }) }
+}
+
+/// A position, where it is finite.
+fn placed(what: &'static str, position: DVec3) -> Result<DVec3, Error> {
+    match position.to_array().into_iter().find(|x| !x.is_finite()) {
+        Some(found) => Err(Error::Value { what, found, expected: "finite coordinates" }),
+        None => Ok(position),
+    }
+}
+
+/// The unit vector of a direction.
+fn unit(what: &'static str, direction: DVec3) -> Result<DVec3, Error> {
+    // Scaled first: the square of a very short or long vector is no number.
+    let scale = direction.abs().max_element();
+    if scale > 0.0 && direction.is_finite() {
+        Ok((direction / scale).normalize())
+    } else {
+        Err(Error::Direction { what })
+    }
+}
+
+/// Writes `factor` times the values.
+fn write(out: &mut [f64], values: &[f64], factor: f64) {
+    for (out, value) in out.iter_mut().zip(values) {
+        *out = factor * value;
+    }
+}
+
+/// Adds `factor` times the values.
+fn add(out: &mut [f64], values: &[f64], factor: f64) {
+    for (out, value) in out.iter_mut().zip(values) {
+        *out += factor * value;
+    }
+}
+
+/// The way from a point to a point light: unit direction, distance, 1/r²; `None` where they coincide, or so nearly that 1/r² is
+/// beyond the largest number.
+fn way(from: DVec3, to: DVec3) -> Option<(DVec3, f64, f64)> {
+    let way = to - from;
+    let distance = way.length();
+    let inverse_square = 1.0 / distance / distance;
+    (distance > 0.0 && inverse_square.is_finite()).then(|| (way / distance, distance, inverse_square))
+}
+
+/// [`Light::importance`] of a point light of so many times the intensities: infinite at the light itself, never NaN.
+fn near_bound(intensity: &[f64], relative: f64, from: DVec3, position: DVec3) -> f64 {
+    relative * intensity.iter().sum::<f64>() / from.distance_squared(position).max(f64::MIN_POSITIVE)
 }

@@ -1,0 +1,6 @@
+//! The renderer against closed forms.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod analytic;
