@@ -8,6 +8,7 @@
 //! | [`spot`] | cosine spot, hard cone | one direction |
 //! | [`goniometric`] | luminaire of a photometric file, a point or from its opening | one direction |
 //! | [`environment`] | constant surroundings, or a picture ([`projection`]) | all around |
+//! | [`sky`] | CIE standard general skies | the hemisphere |
 //! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
 
 pub mod bounding;
@@ -19,6 +20,7 @@ pub mod environment;
 pub mod goniometric;
 pub mod point;
 pub mod projection;
+pub mod sky;
 pub mod spot;
 
 use glam::DVec3;
