@@ -18,6 +18,7 @@
 //! | [`material`] | scattering at a surface, reflection and transmission |
 //! | [`emission`] | what a surface emits |
 //! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
+//! | [`description`] | scenes in TOML |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
@@ -26,6 +27,7 @@
 
 pub mod accelerate;
 pub mod bands;
+pub mod description;
 pub mod emission;
 pub mod estimate;
 pub mod film;
