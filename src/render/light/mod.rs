@@ -13,13 +13,14 @@
 //! | [`sun`] | the sun by date, time and place | a disc |
 //! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
 //!
-//! Lights at infinity shine through the scene's [`bounding`] sphere.
+//! [`choice`] chooses among them; lights at infinity shine through the scene's [`bounding`] sphere.
 
 pub mod barzel;
 pub mod bounding;
 mod cells;
 #[cfg(test)]
 mod check;
+pub mod choice;
 pub mod distant;
 pub mod environment;
 pub mod goniometric;
