@@ -92,8 +92,8 @@ fn apparent(moment: Moment) -> ([f64; 3], f64) {
     let t = (day + DELTA_T_S / 86_400.0) / 36_525.0;
     let sin = |deg: f64| deg.to_radians().sin();
     // Meeus 25.2 to 25.8.
-    let longitude = 280.46646 + 36_000.76983 * t + 0.000_303_2 * t * t;
-    let anomaly = 357.52911 + 35_999.05029 * t - 0.000_153_7 * t * t;
+    let longitude = 280.466_46 + 36_000.769_83 * t + 0.000_303_2 * t * t;
+    let anomaly = 357.529_11 + 35_999.050_29 * t - 0.000_153_7 * t * t;
     let eccentricity = 0.016_708_634 - 0.000_042_037 * t - 0.000_000_126_7 * t * t;
     let centre = (1.914_602 - 0.004_817 * t - 0.000_014 * t * t) * sin(anomaly)
         + (0.019_993 - 0.000_101 * t) * sin(2.0 * anomaly)
