@@ -17,7 +17,7 @@
 //! | [`light`] | what lights the scene and is no shape: points, spots, luminaires, skies, pictures |
 //! | [`material`] | scattering at a surface, reflection and transmission |
 //! | [`emission`] | what a surface emits |
-//! | [`accelerate`] | all surfaces, and the search for the one that a ray meets |
+//! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
@@ -39,3 +39,4 @@ pub mod scene;
 pub mod sensor;
 pub mod shape;
 pub mod spool;
+pub mod tree;

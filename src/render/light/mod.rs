@@ -7,6 +7,9 @@
 //! | [`point`] | isotropic point | one direction |
 //! | [`spot`] | cosine spot, hard cone | one direction |
 //! | [`goniometric`] | luminaire of a photometric file, a point or from its opening | one direction |
+//! | [`environment`] | constant surroundings, or a picture ([`projection`]) | all around |
+//! | [`sky`] | CIE standard general skies | the hemisphere |
+//! | [`sun`] | the sun by date, time and place | a disc |
 //! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
 
 pub mod bounding;
@@ -14,9 +17,13 @@ mod cells;
 #[cfg(test)]
 mod check;
 pub mod distant;
+pub mod environment;
 pub mod goniometric;
 pub mod point;
+pub mod projection;
+pub mod sky;
 pub mod spot;
+pub mod sun;
 
 use glam::DVec3;
 

@@ -79,6 +79,11 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
     /// The first crossing with `near < t < far`.
     fn cross(&self, ray: &Ray, near: f64, far: f64) -> Option<Crossing>;
 
+    /// Whether there is any crossing with `near < t < far`.
+    fn is_crossed(&self, ray: &Ray, near: f64, far: f64) -> bool {
+        self.cross(ray, near, far).is_some()
+    }
+
     /// The surface at a crossing of this shape.
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint;
 
