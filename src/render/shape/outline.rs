@@ -240,3 +240,94 @@ pub(super) fn triangulate(corners: &[DVec3], facet: &Facet) -> Vec<[usize; 3]> {
     }
     triangles
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::shape::Shape;
+    use crate::render::shape::polygon::Polygon;
+
+    fn points(corners: &[[f64; 3]]) -> Vec<DVec3> {
+        corners.iter().copied().map(DVec3::from).collect()
+    }
+
+    /// The sum over the edges at 50 digits (mpmath), where nothing cancels; that of the first triangle is also the integral over its area.
+    #[test]
+    fn polygons_cut_by_the_horizon() {
+        let triangle = [[0.3, -0.2, 0.5], [1.5, 0.4, 0.1], [-0.2, 0.9, 0.8]];
+        let star = [
+            [-0.5, -0.5, 0.75],
+            [0.0, -0.25, 0.75],
+            [0.5, -0.5, 0.75],
+            [0.25, 0.0, 0.75],
+            [0.5, 0.5, 0.75],
+            [0.0, 0.25, 0.75],
+            [-0.5, 0.5, 0.75],
+            [-0.25, 0.0, 0.75],
+        ];
+        let tiny = [[1.0, 0.0, 1.0], [1.0, 1e-8, 1.0], [1.0, 2e-8, 1.0 + 1e-8], [1.0, 0.0, 1.0 + 2e-8]];
+        let huge = [[1e8, -1e8, 1.0], [1e8, 1e8, 1.0], [-1e8, 1e8, 1.0], [-1e8, -1e8, 1.0]];
+        let small = [[3.0, 0.0, -0.005], [3.0, 0.01, -0.005], [3.0, 0.01, 0.01], [3.0, 0.0, 0.01]];
+        let wall = [[2.0, -1.0, -1.0], [2.0, 1.0, -1.0], [2.0, 1.0, 2.0], [2.0, -1.0, 2.0]];
+        let cases: [(&[[f64; 3]], [f64; 3], f64); 7] = [
+            (&triangle, [0.0, 0.0, 1.0], 0.625_244_238_286_363_1),
+            (&triangle, [-1.0, 0.3, 0.2], 0.030_763_116_049_179_435),
+            (&wall, [0.1, 0.2, 1.0], 0.278_682_870_610_015_8),
+            (&tiny, [1.0, 1.0, 1.0], 7.216_878_317_751_178e-17),
+            (&huge, [0.0, 0.6, 0.8], 2.827_433_377_518_424_9),
+            (&small, [0.001, 0.0, 1.0], 3.129_576_021_123_853_5e-8),
+            (&star, [0.9, 0.2, 0.1], 0.116_126_770_737_916_41),
+        ];
+        for (corners, normal, expected) in cases {
+            let polygon = Polygon::new(points(corners)).unwrap();
+            let got = polygon.projected_solid_angle(DVec3::ZERO, DVec3::from(normal).normalize()).unwrap();
+            assert!((got / expected - 1.0).abs() < 1e-12, "{corners:?}: {got} {expected}");
+        }
+        // Seen from 1e-9 m over its plane: the sides, of size 1 each, cancel to 4e-10, and their rounding stays.
+        let flat = [[0.5, 0.5, 1e-9], [2.0, 0.5, 1e-9], [2.0, 3.0, 1e-9], [0.5, 3.0, 1e-9]];
+        let got = Polygon::new(points(&flat)).unwrap().projected_solid_angle(DVec3::ZERO, DVec3::X).unwrap();
+        assert!((got - 4.357_957_209_527_053e-10).abs() < 4.0 * f64::EPSILON, "{got}");
+    }
+
+    #[test]
+    fn concave_outlines_are_cut_into_their_area() {
+        // A comb with collinear corners: seven unit squares.
+        let comb = points(&[
+            [0.0, 0.0, 0.0],
+            [3.0, 0.0, 0.0],
+            [5.0, 0.0, 0.0],
+            [5.0, 2.0, 0.0],
+            [4.0, 2.0, 0.0],
+            [4.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, 2.0, 0.0],
+            [0.0, 2.0, 0.0],
+        ]);
+        let facet = plane("comb", &comb).unwrap();
+        check_flat(&comb, &facet).unwrap();
+        check_simple(&comb, &facet).unwrap();
+        let triangles = triangulate(&comb, &facet);
+        let areas = triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|i| comb[i]);
+            0.5 * cross(b - a, c - a).dot(facet.normal)
+        });
+        let areas: Vec<f64> = areas.collect();
+        assert!(areas.iter().all(|&a| a > 0.0), "{areas:?}");
+        assert_eq!(areas.iter().sum::<f64>(), 7.0);
+    }
+
+    #[test]
+    fn bad_outlines_are_named() {
+        let error = |corners: &[[f64; 3]]| Polygon::new(points(corners)).unwrap_err();
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(error(&[a, b]), ShapeError::TooFew { what: "corners", count: 2, least: 3 });
+        assert_eq!(error(&[a, b, b, c]), ShapeError::CornerTwice { corner: 2 });
+        assert_eq!(error(&[a, b, c, a]), ShapeError::CornerTwice { corner: 0 });
+        assert_eq!(error(&[a, b, [2.0, 0.0, 0.0]]), ShapeError::NoArea { what: "polygon" });
+        assert!(matches!(error(&[a, b, c, [0.0, 1.0, 0.1]]), ShapeError::NotFlat { .. }));
+        assert_eq!(error(&[a, b, d, [1.5, 1.0, 0.0]]), ShapeError::Crossed { first: 1, second: 3 });
+        // An edge that runs back over the one before.
+        assert_eq!(error(&[a, b, c, [1.0, 0.5, 0.0], d]), ShapeError::Crossed { first: 1, second: 2 });
+        assert_eq!(error(&[a, b, [f64::NAN, 0.0, 0.0]]), ShapeError::NotFinite { what: "corner" });
+    }
+}

@@ -185,3 +185,87 @@ fn segment(x: f64) -> f64 {
     let series = [14.0, 12.0, 10.0, 8.0, 6.0, 4.0].into_iter().fold(1.0, |sum, n| 1.0 - square / (n * (n + 1.0)) * sum);
     y * square / 12.0 * series
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::shape::disk::Disk;
+
+    /// ∫ 2φ(θ) cosθ sinθ dθ by tanh-sinh quadrature at 50 digits (mpmath), φ the half-width of the cap at the angle θ to the normal.
+    #[test]
+    fn caps_cut_by_the_horizon() {
+        let cases: [([f64; 3], f64, [f64; 3], f64); 8] = [
+            ([3.0, 0.0, 0.25], 0.5, [0.0, 0.0, 1.0], 7.786_611_384_461_041e-3),
+            ([3.0, 1.0, -0.25], 0.5, [0.1, 0.0, 1.0], 3.280_782_631_866_537e-3),
+            ([1.0, 0.0, 3e-7], 1e-6, [0.0, 0.0, 1.0], 1.227_224_337_896_885_9e-18),
+            ([1.0, 0.0, -5e-7], 1e-6, [0.0, 0.0, 1.0], 1.259_202_772_400_803e-19),
+            ([1.0, 0.5, -0.9], 1.4, [0.0, 0.0, 1.0], 0.291_340_447_602_282_85),
+            ([0.2, 0.1, 0.1], 0.24, [0.0, 0.0, 1.0], 1.823_227_975_627_132_3),
+            ([2.0, 0.0, 0.0], 1.0, [0.0, 0.0, 1.0], 0.090_586_073_706_079_55),
+            ([1e8, 0.0, 3e7], 5e7, [0.0, 0.0, 1.0], 0.217_078_917_944_888_74),
+        ];
+        for (centre, radius, normal, expected) in cases {
+            let sphere = Sphere::new(centre.into(), radius).unwrap();
+            let got = sphere.projected_solid_angle(DVec3::ZERO, DVec3::from(normal).normalize()).unwrap();
+            assert!((got / expected - 1.0).abs() < 1e-12, "{centre:?} {radius}: {got} {expected}");
+        }
+    }
+
+    #[test]
+    fn inside_on_and_beyond() {
+        let sphere = Sphere::new(DVec3::new(0.0, 0.0, 2.0), 1.0).unwrap();
+        let at = |from: DVec3, normal: DVec3| sphere.projected_solid_angle(from, normal).unwrap();
+        assert_eq!(at(DVec3::new(0.2, 0.1, 1.9), DVec3::X), PI);
+        assert_eq!(at(DVec3::ZERO, DVec3::NEG_Z), 0.0);
+        // π (R/d)².
+        assert!((at(DVec3::ZERO, DVec3::Z) - PI / 4.0).abs() < 1e-15);
+        // Touching it, half of all directions: π (1 + cos ω)/2.
+        let touching = at(DVec3::new(0.0, 0.0, 1.0 - 1e-15), DVec3::new(0.6, 0.0, 0.8));
+        assert!((touching - 0.9 * PI).abs() < 1e-6, "{touching}");
+    }
+
+    /// The rim of the visible cap, filled by a disk, is seen in the same directions: another closed form of the same number.
+    #[test]
+    fn a_sphere_looks_like_the_disk_in_its_cone() {
+        for distance in [1.000_001, 1.5, 40.0, 1e5] {
+            let centre = distance * DVec3::new(0.48, -0.6, 0.64);
+            let sphere = Sphere::new(centre, 1.0).unwrap();
+            let along = 1.0 - 1.0 / (distance * distance);
+            let disk = Disk::new(along * centre, centre, along.sqrt()).unwrap();
+            for i in 0..40 {
+                let normal = (DVec3::new(0.48, -0.6, 0.64) + f64::from(i - 20) * 0.1 / distance.sqrt() * DVec3::Z)
+                    .cross(DVec3::new(0.3, 0.1 * f64::from(i), 0.2))
+                    .normalize();
+                let [a, b] =
+                    [&sphere as &dyn Shape, &disk].map(|s| s.projected_solid_angle(DVec3::ZERO, normal).unwrap());
+                assert!((a - b).abs() <= 2e-12 * a.max(1.0 / (distance * distance)), "{distance} {i}: {a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn rays_through_far_and_near_spheres() {
+        let sphere = Sphere::new(DVec3::new(0.0, 0.0, 5.0), 2.0).unwrap();
+        let cross = |origin: DVec3, direction: DVec3, near, far| {
+            sphere.cross(&Ray { origin, direction }, near, far).map(|c| c.t)
+        };
+        assert_eq!(cross(DVec3::ZERO, DVec3::Z, 0.0, 10.0), Some(3.0));
+        assert_eq!(cross(DVec3::ZERO, DVec3::Z, 3.0, 10.0), Some(7.0));
+        assert_eq!(cross(DVec3::ZERO, DVec3::Z, 3.0, 7.0), None);
+        assert_eq!(cross(DVec3::ZERO, DVec3::NEG_Z, 0.0, 10.0), None);
+        assert_eq!(cross(DVec3::new(0.0, 0.0, 5.0), DVec3::X, 0.0, 10.0), Some(2.0));
+        // A sphere of a millimetre from a thousand kilometres: t to the last digits, where textbook roots lose them all.
+        let far = Sphere::new(DVec3::new(0.0, 1e6, 0.0), 1e-3).unwrap();
+        let t = far.cross(&Ray { origin: DVec3::ZERO, direction: DVec3::Y }, 0.0, f64::INFINITY).unwrap().t;
+        assert!((t - (1e6 - 1e-3)).abs() < 1e-9, "{t}");
+    }
+
+    #[test]
+    fn texture_follows_the_turn() {
+        let turned = Sphere::new(DVec3::ZERO, 1.0).unwrap().turned(DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2));
+        let ray = Ray { origin: DVec3::X * 3.0, direction: DVec3::NEG_X };
+        let pole = turned.surface(&ray, &turned.cross(&ray, 0.0, 9.0).unwrap());
+        assert!(pole.uv.y < 1e-15 && (pole.tangent.length() - 1.0).abs() < 1e-15, "{pole:?}");
+        assert!(Sphere::new(DVec3::ZERO, 0.0).is_err() && Sphere::new(DVec3::NAN, 1.0).is_err());
+    }
+}
