@@ -27,6 +27,7 @@
 
 pub mod accelerate;
 pub mod bands;
+pub mod build;
 pub mod description;
 pub mod emission;
 pub mod estimate;

@@ -48,7 +48,10 @@ impl<'de> Visitor<'de> for Reader {
         let mut table: Vec<[f64; 2]> = Vec::new();
         while let Some(pair) = items.next_element::<[f64; 2]>()? {
             if table.last().is_some_and(|last| pair[0] <= last[0]) {
-                return Err(A::Error::custom(format!("found {} nm behind a greater one; expected ascending wavelengths", pair[0])));
+                return Err(A::Error::custom(format!(
+                    "found {} nm behind a greater one; expected ascending wavelengths",
+                    pair[0]
+                )));
             }
             table.push(pair);
         }
