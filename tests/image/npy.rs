@@ -84,7 +84,7 @@ fn other_arrays_are_refused_with_a_word() {
         (file("<f4", "False", "(2, 0, 2)", &bytes), "found (2, 0, 2) for `shape`"),
         (file("<f4", "False", "(2, 3, 5)", &bytes), "found 3 values for the wavelengths; expected 5"),
         (file("<f4", "False", "(20, 30, 3)", &bytes), "found 224 bytes; expected 7328"),
-        (b"\x93NUMPY\x01\x00\xff\xff{".to_vec(), "failed to fill whole buffer"),
+        (b"\x93NUMPY\x01\x00\xff\xff{".to_vec(), "found the end of the file in its header; expected a whole NPY file"),
         (b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(), "found 4294967295 for the length of the header"),
         (b"P6 2 2 255 ....".to_vec(), "found other first bytes; expected an NPY file"),
     ] {

@@ -135,18 +135,18 @@ fn header(input: &mut (impl Read + Seek)) -> Result<(Header, bool), Error> {
 fn header_text(input: &mut (impl Read + Seek)) -> Result<(String, u64), Error> {
     input.seek(SeekFrom::Start(0))?;
     let mut start = [0; 8];
-    input.read_exact(&mut start)?;
+    fill(input, &mut start)?;
     if !start.starts_with(MAGIC) {
         let expected = "an NPY file".to_owned();
         return Err(ErrorKind::Unexpected { found: "other first bytes".to_owned(), expected }.into());
     }
     let (length, before) = if start[6] == 1 {
         let mut length = [0; 2];
-        input.read_exact(&mut length)?;
+        fill(input, &mut length)?;
         (usize::from(u16::from_le_bytes(length)), 10)
     } else {
         let mut length = [0; 4];
-        input.read_exact(&mut length)?;
+        fill(input, &mut length)?;
         (u32::from_le_bytes(length) as usize, 12)
     };
     if length > LONGEST_HEADER {
@@ -155,8 +155,19 @@ fn header_text(input: &mut (impl Read + Seek)) -> Result<(String, u64), Error> {
         return Err(ErrorKind::Value { found: length.to_string(), field, expected }.into());
     }
     let mut text = vec![0; length];
-    input.read_exact(&mut text)?;
+    fill(input, &mut text)?;
     Ok((String::from_utf8_lossy(&text).into_owned(), (before + length) as u64))
+}
+
+/// Reads as many bytes as `out` has, of a header.
+fn fill(input: &mut impl Read, out: &mut [u8]) -> Result<(), Error> {
+    input.read_exact(out).map_err(|error| match error.kind() {
+        std::io::ErrorKind::UnexpectedEof => {
+            let (found, expected) = ("the end of the file in its header", "a whole NPY file");
+            ErrorKind::Unexpected { found: found.to_owned(), expected: expected.to_owned() }.into()
+        }
+        _ => error.into(),
+    })
 }
 
 /// The value of a key in the dictionary literal.
