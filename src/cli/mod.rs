@@ -12,6 +12,7 @@ mod image;
 mod lamp;
 mod notes;
 mod output;
+mod render;
 mod tables;
 mod writer;
 
@@ -52,6 +53,8 @@ enum Command {
     /// Reflection of materials (BRDF models): facts, audits, values, pictures.
     #[command(subcommand)]
     Brdf(brdf::BrdfCommand),
+    /// A scene (TOML) into readings of virtual instruments with their standard errors, and spectral pictures.
+    Render(Box<render::RenderArgs>),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -106,6 +109,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Image(command) => image::run(command, cli.talk),
         Command::Lamp(command) => lamp::run(command, cli.talk),
         Command::Brdf(command) => brdf::run(command, cli.talk),
+        Command::Render(arguments) => render::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

@@ -37,6 +37,7 @@ pub mod light;
 pub mod material;
 pub mod measure;
 pub mod ray;
+pub mod reading;
 pub mod sampler;
 pub mod scene;
 pub mod sensor;

@@ -134,7 +134,7 @@ impl Tree {
         // A component of 0 inside its slab gives −∞ and ∞; on its very face 0 · ∞, which min and max pass over.
         let enter = a.min(b).max_element().max(0.0);
         let leave = a.max(b).min_element().min(far);
-        if !(enter <= leave) {
+        if enter.is_nan() || leave.is_nan() || enter > leave {
             return None;
         }
         let length = d.length();

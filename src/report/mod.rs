@@ -11,4 +11,5 @@ pub mod csv;
 pub mod envelope;
 pub mod image;
 pub mod lamp;
+pub mod render;
 pub mod text;

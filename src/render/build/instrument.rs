@@ -127,7 +127,7 @@ impl Builder<'_> {
             );
             return Err(self.wrong(&sensor.name.span(), message));
         };
-        if sensor.target.is_some_and(|t| !(t.0 > 0.0)) {
+        if sensor.target.is_some_and(|t| t.0.is_nan() || t.0 <= 0.0) {
             return Err(self.wrong(&sensor.name.span(), "a `target` that is not above 0"));
         }
         let target = sensor.target.map(|t| t.0);

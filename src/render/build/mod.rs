@@ -138,7 +138,7 @@ impl Builder<'_> {
     /// The wavelengths to carry: as asked for, or as few as the scene's spectra allow, and the lines of its line sources.
     fn bands(&self, colours: &colour::Colours) -> Result<(Bands, Option<f64>), Error> {
         let render = &self.description.render;
-        if !(render.wavelength_tolerance > 0.0) {
+        if render.wavelength_tolerance.is_nan() || render.wavelength_tolerance <= 0.0 {
             return Err(self.wrong(
                 &(0..0),
                 "a `wavelength_tolerance` that is not above 0; expected a relative error such as 1e-3",

@@ -29,6 +29,9 @@ use crate::render::shape::rectangle::Rectangle;
 use crate::render::shape::sphere::Sphere;
 use crate::spectrum::integrate::Weighting;
 
+/// The surfaces of a shape, or why there are none.
+type Faces = Result<Vec<Arc<dyn Shape>>, ShapeError>;
+
 /// A material by name.
 pub(super) type Named = (String, Arc<dyn Material>);
 
@@ -135,8 +138,8 @@ impl Builder<'_> {
     /// The surfaces of a described shape.
     fn faces(&self, shape: &Described, number: usize) -> Result<Vec<Arc<dyn Shape>>, Error> {
         let v = DVec3::from_array;
-        let mut out: Vec<(Range<usize>, Result<Vec<Arc<dyn Shape>>, ShapeError>)> = Vec::new();
-        fn one<S: Shape + 'static>(shape: Result<S, ShapeError>) -> Result<Vec<Arc<dyn Shape>>, ShapeError> {
+        let mut out: Vec<(Range<usize>, Faces)> = Vec::new();
+        fn one<S: Shape + 'static>(shape: Result<S, ShapeError>) -> Faces {
             shape.map(|s| vec![Arc::new(s) as Arc<dyn Shape>])
         }
         if let Some(s) = &shape.sphere {
@@ -225,7 +228,7 @@ impl Builder<'_> {
 }
 
 /// The six faces of a box; normals outwards, or inwards for a room.
-fn cuboid(a: DVec3, b: DVec3, inwards: bool) -> Result<Vec<Arc<dyn Shape>>, ShapeError> {
+fn cuboid(a: DVec3, b: DVec3, inwards: bool) -> Faces {
     let (min, max) = (a.min(b), a.max(b));
     let size = max - min;
     let mut faces: Vec<Arc<dyn Shape>> = Vec::with_capacity(6);

@@ -1,0 +1,105 @@
+//! The files of a scene.
+
+use std::cell::RefCell;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use crate::cli::Failure;
+use crate::cli::convert::single;
+use crate::constants::SecondRadiation;
+use crate::finding::{Finding, Location};
+use crate::luminaire::Luminaire;
+use crate::luminaire::format::{self, ReadOptions};
+use crate::render::build::Files;
+use crate::render::reading::Reading;
+use crate::report::envelope::Input;
+use crate::spectrum::Spectrum;
+
+/// A scene's text and the folder in which its files are.
+pub(super) struct Scene {
+    pub text: String,
+    folder: PathBuf,
+    inputs: RefCell<Vec<Input>>,
+}
+
+fn checksum(bytes: &[u8]) -> Option<String> {
+    Some(Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect())
+}
+
+impl Scene {
+    /// Reads a scene; `-` is standard input, whose files are in the current folder.
+    pub(super) fn read(path: &str) -> Result<Self, Failure> {
+        let mut bytes = Vec::new();
+        let done = if path == "-" {
+            std::io::stdin().read_to_end(&mut bytes).map(|_| ())
+        } else {
+            fs::read(path).map(|b| bytes = b)
+        };
+        done.map_err(|e| Failure::Message(format!("{path}: cannot be read: {e}; expected a scene (TOML)")))?;
+        let input = Input { path: path.to_owned(), sha256: checksum(&bytes) };
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let at = e.utf8_error().valid_up_to();
+            Failure::Message(format!("{path}: byte {at} is not UTF-8; expected a scene (TOML)"))
+        })?;
+        let folder = Path::new(path).parent().map(Path::to_owned).unwrap_or_default();
+        Ok(Self { text, folder, inputs: RefCell::new(vec![input]) })
+    }
+
+    /// The scene and all files read for it.
+    pub(super) fn inputs(&self) -> Vec<Input> {
+        self.inputs.borrow().clone()
+    }
+
+    fn path(&self, file: &str) -> String {
+        self.folder.join(file).display().to_string()
+    }
+
+    fn note(&self, input: Input) {
+        let mut inputs = self.inputs.borrow_mut();
+        if !inputs.contains(&input) {
+            inputs.push(input);
+        }
+    }
+}
+
+impl Files for Scene {
+    fn spectrum(&self, file: &str) -> Result<Spectrum, String> {
+        let path = self.path(file);
+        if !Path::new(&path).is_file() {
+            return Err(format!("{path}: no such file; expected a spectrum"));
+        }
+        let found = single(&path, None, SecondRadiation::default()).map_err(|e| e.message)?;
+        self.note(found.input);
+        Ok(found.measured.spectrum)
+    }
+
+    fn luminaire(&self, file: &str) -> Result<Luminaire, String> {
+        let path = self.path(file);
+        let bytes = fs::read(&path).map_err(|e| format!("{path}: cannot be read: {e}; expected a lamp file"))?;
+        let read = format::open(&bytes, &ReadOptions { format: None, repair: false });
+        let file = read.map_err(|e| e.in_file(&path).to_string())?;
+        self.note(Input { path, sha256: checksum(&bytes) });
+        Ok(file.value.luminaire)
+    }
+}
+
+/// What is to be said of readings beside their figures.
+pub(super) fn findings(path: &str, readings: &[Reading]) -> Vec<Finding> {
+    (readings.iter().filter(|r| r.faults.count() > 0))
+        .map(|r| {
+            let f = &r.faults;
+            let message = format!(
+                "sensor `{}`: {} samples were left out: {} with a NaN, {} infinite, {} negative",
+                r.name,
+                f.count(),
+                f.nan,
+                f.infinite,
+                f.negative
+            );
+            Finding::warning("R001", message).at(Location::default().in_file(path))
+        })
+        .collect()
+}

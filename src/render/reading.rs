@@ -1,0 +1,162 @@
+//! What the instruments of a render read: figures with their standard errors, spectra, and the colour of the light.
+
+use super::bands::Bands;
+use super::build::{Instrument, Kind, Quantities};
+use super::estimate::{Estimate, Faults, Figure};
+use super::film::Noise;
+use super::measure::{Board, Meter};
+use super::sensor::response::Response;
+use crate::colorimetry::{cct, chromaticity};
+use crate::constants::SecondRadiation;
+
+/// What a meter's reading is called, and its luminous unit.
+#[must_use]
+pub fn quantity(response: &Response) -> (&'static str, &'static str) {
+    match response {
+        Response::Planar => ("illuminance", "lx"),
+        Response::Hemispherical => ("hemispherical illuminance", "lx"),
+        Response::Cylindrical => ("cylindrical illuminance", "lx"),
+        Response::Spherical => ("spherical illuminance", "lx"),
+        Response::Cone { .. } => ("luminance", "cd/m2"),
+    }
+}
+
+/// The colour of a reading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectral {
+    /// Wavelengths of the bands, nm.
+    pub wavelengths_nm: Vec<f64>,
+    /// The reading per band, with its standard error, per nm (a line: its whole amount).
+    pub bands: Vec<Figure>,
+    /// Tristimulus values, in the unit of the reading.
+    pub xyz: [f64; 3],
+    /// Chromaticity x, y; `None` without light.
+    pub chromaticity_xy: Option<[f64; 2]>,
+    /// Correlated colour temperature, K, where there is one.
+    pub cct_k: Option<f64>,
+    /// Distance to the Planckian locus in the CIE 1960 diagram.
+    pub duv: Option<f64>,
+}
+
+/// The points of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    /// Along the first and the second edge.
+    pub counts: [usize; 2],
+    /// Lengths of the edges, m.
+    pub size_m: [f64; 2],
+    /// Row by row along the first edge.
+    pub figures: Vec<Figure>,
+}
+
+/// What one instrument read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Its name.
+    pub name: String,
+    /// What was read: `illuminance`, `luminance` ….
+    pub quantity: &'static str,
+    /// The luminous unit.
+    pub unit: &'static str,
+    /// The reading; of a grid and of a picture the mean.
+    pub figure: Figure,
+    /// The same unweighted, over the wavelengths carried.
+    pub radiant: Option<Figure>,
+    /// Samples taken.
+    pub samples: u64,
+    /// Samples that were left out.
+    pub faults: Faults,
+    /// The relative standard error that was asked for, and whether it was reached.
+    pub target: Option<(f64, bool)>,
+    /// The spectrum, where it was asked for.
+    pub spectral: Option<Spectral>,
+    /// The points of a grid.
+    pub points: Option<Points>,
+}
+
+/// The spectrum and the colour of a reading.
+fn spectral(estimate: &Estimate, bands: &Bands, quantities: &Quantities) -> Spectral {
+    let of = |component: usize| {
+        let weights: Vec<f64> = quantities.tristimulus.iter().map(|t| t[component]).collect();
+        estimate.figure(&weights).value
+    };
+    let xyz = [of(0), of(1), of(2)];
+    let found = chromaticity::uv_1960(xyz).and_then(|uv| cct::nearest(uv, SecondRadiation::default()).ok());
+    Spectral {
+        wavelengths_nm: bands.wavelengths_nm().to_vec(),
+        bands: estimate.bands(),
+        xyz,
+        chromaticity_xy: chromaticity::xy(xyz),
+        cct_k: found.as_ref().map(|c| c.kelvin),
+        duv: found.as_ref().map(|c| c.duv),
+    }
+}
+
+/// The mean of independent figures.
+fn mean(figures: &[Figure]) -> Figure {
+    #[expect(clippy::cast_precision_loss, reason = "a number of points")]
+    let n = figures.len() as f64;
+    let value = figures.iter().map(|f| f.value).sum::<f64>() / n;
+    let variance = figures.iter().map(|f| f.standard_error * f.standard_error).sum::<f64>();
+    Figure { value, standard_error: variance.sqrt() / n }
+}
+
+/// The reading of a meter or of a grid, whose meters stand on the board from `first` on; `None` for a camera.
+#[must_use]
+pub fn of_board(
+    instrument: &Instrument,
+    board: &Board<'_>,
+    first: usize,
+    bands: &Bands,
+    quantities: &Quantities,
+    target: Option<(f64, bool)>,
+) -> Option<Reading> {
+    let meters: &[Meter] = match &instrument.kind {
+        Kind::Meter(meter) => std::slice::from_ref(meter),
+        Kind::Grid { meters, .. } => meters,
+        Kind::Camera(_) => return None,
+    };
+    let estimates: Vec<Estimate> = (first..first + meters.len()).map(|m| board.estimate(m)).collect();
+    let figures: Vec<Figure> = estimates.iter().map(|e| e.figure(&quantities.luminous)).collect();
+    let radiant: Vec<Figure> = estimates.iter().map(|e| e.figure(&quantities.radiant)).collect();
+    let mut faults = Faults::default();
+    estimates.iter().for_each(|e| faults.append(&e.faults()));
+    let (quantity, unit) = quantity(&meters[0].response);
+    let points = match &instrument.kind {
+        Kind::Grid { counts, size_m, .. } => {
+            Some(Points { counts: *counts, size_m: *size_m, figures: figures.clone() })
+        }
+        _ => None,
+    };
+    Some(Reading {
+        name: instrument.name.clone(),
+        quantity,
+        unit,
+        figure: mean(&figures),
+        radiant: Some(mean(&radiant)),
+        samples: estimates.iter().map(Estimate::samples).sum(),
+        faults,
+        target,
+        spectral: instrument.spectrum.then(|| spectral(&estimates[0], bands, quantities)),
+        points,
+    })
+}
+
+/// The mean luminance of a picture.
+#[must_use]
+pub fn of_picture(instrument: &Instrument, noise: &Noise, samples_per_pixel: u64) -> Reading {
+    #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
+    let n = noise.pixels.max(1) as f64;
+    Reading {
+        name: instrument.name.clone(),
+        quantity: "mean luminance of the picture",
+        unit: "cd/m2",
+        figure: Figure { value: noise.luminance / n, standard_error: noise.variance.sqrt() / n },
+        radiant: None,
+        samples: noise.pixels * samples_per_pixel,
+        faults: noise.faults,
+        target: None,
+        spectral: None,
+        points: None,
+    }
+}

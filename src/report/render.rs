@@ -1,0 +1,228 @@
+//! `render`: what a scene needs, and what its instruments read.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use crate::render::build::{Built, Kind};
+use crate::render::integrator::path::Follow;
+use crate::render::reading::{Points, Reading, Spectral};
+use crate::units::significant;
+
+/// What was modelled, and what was left out and why: `model` of the result.
+#[must_use]
+pub fn model(built: &Built) -> Value {
+    let bands = built.scene.bands();
+    let (solver, light) = match built.settings.limits.follow {
+        Follow::All => ("path", "all light, direct and reflected"),
+        Follow::Specular => ("whitted", "direct light and its reflections in mirrors and glass"),
+        Follow::Nothing => ("direct", "direct light alone"),
+    };
+    let mut left_out = Vec::new();
+    if built.settings.limits.follow != Follow::All {
+        left_out.push("light that was reflected diffusely before");
+    }
+    if built.settings.limits.max_edges.is_some() {
+        left_out.push("paths longer than max_edges");
+    }
+    json!({
+        "solver": solver,
+        "light": light,
+        "wavelengths": {
+            "count": bands.len(),
+            "nm": bands.wavelengths_nm(),
+            "relative_error": built.wavelength_error,
+            "paths": "every path carries all of them",
+        },
+        "max_edges": built.settings.limits.max_edges,
+        "left_out": left_out,
+    })
+}
+
+/// One of `sensors`.
+#[must_use]
+pub fn sensor(reading: &Reading) -> Value {
+    let mut out = Map::new();
+    let mut set = |key: &str, value: Value| {
+        out.insert(key.to_owned(), value);
+    };
+    set("name", reading.name.clone().into());
+    set("quantity", reading.quantity.into());
+    set("unit", reading.unit.into());
+    set("value", reading.figure.value.into());
+    set("standard_error", reading.figure.standard_error.into());
+    set("samples", reading.samples.into());
+    if let Some(radiant) = reading.radiant {
+        let unit = if reading.unit == "lx" { "W/m2" } else { "W/m2/sr" };
+        set("radiant", json!({"unit": unit, "value": radiant.value, "standard_error": radiant.standard_error}));
+    }
+    if let Some((relative, reached)) = reading.target {
+        set("target", json!({"relative_standard_error": relative, "reached": reached}));
+    }
+    if reading.faults.count() > 0 {
+        let f = &reading.faults;
+        set("faulty_samples", json!({"nan": f.nan, "infinite": f.infinite, "negative": f.negative}));
+    }
+    if let Some(spectral) = &reading.spectral {
+        set("spectrum", spectrum(spectral));
+    }
+    if let Some(points) = &reading.points {
+        set("grid", grid(points));
+    }
+    out.into()
+}
+
+fn spectrum(s: &Spectral) -> Value {
+    json!({
+        "wavelengths_nm": s.wavelengths_nm,
+        "values": s.bands.iter().map(|b| b.value).collect::<Vec<_>>(),
+        "standard_errors": s.bands.iter().map(|b| b.standard_error).collect::<Vec<_>>(),
+        "xyz": s.xyz,
+        "chromaticity_xy": s.chromaticity_xy,
+        "cct_k": s.cct_k,
+        "duv": s.duv,
+    })
+}
+
+fn grid(p: &Points) -> Value {
+    let rows = |of: fn(&crate::render::estimate::Figure) -> f64| -> Vec<Vec<f64>> {
+        p.figures.chunks(p.counts[0]).map(|row| row.iter().map(of).collect()).collect()
+    };
+    let values = || p.figures.iter().map(|f| f.value);
+    json!({
+        "points": p.counts,
+        "size_m": p.size_m,
+        "minimum": values().fold(f64::INFINITY, f64::min),
+        "maximum": values().fold(f64::NEG_INFINITY, f64::max),
+        "values": rows(|f| f.value),
+        "standard_errors": rows(|f| f.standard_error),
+    })
+}
+
+/// The result of a render, one object of `results`.
+#[must_use]
+pub fn result(built: &Built, readings: &[Reading], written: &[String], seconds: f64) -> Value {
+    json!({
+        "sensors": readings.iter().map(sensor).collect::<Vec<_>>(),
+        "model": model(built),
+        "written": written,
+        "seconds": seconds,
+    })
+}
+
+/// The readings for people.
+#[must_use]
+pub fn text(built: &Built, readings: &[Reading]) -> String {
+    let mut out = String::new();
+    let width = readings.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
+    // Writing to a string cannot fail.
+    for r in readings {
+        let percent = if r.figure.value == 0.0 { 0.0 } else { 100.0 * r.figure.standard_error / r.figure.value.abs() };
+        let _ = writeln!(
+            out,
+            "{:width$}  {} ± {} {} ({}, {} %, {} samples)",
+            r.name,
+            significant(r.figure.value, 5),
+            significant(r.figure.standard_error, 2),
+            r.unit.replace("m2", "m²"),
+            r.quantity,
+            significant(percent, 2),
+            r.samples
+        );
+        if let Some(p) = &r.points {
+            let values = || p.figures.iter().map(|f| f.value);
+            let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            let _ = writeln!(
+                out,
+                "{:width$}  {} × {} points, {} to {} {}, uniformity U0 {}",
+                "",
+                p.counts[0],
+                p.counts[1],
+                significant(low, 4),
+                significant(high, 4),
+                r.unit,
+                significant(low / r.figure.value, 3)
+            );
+        }
+        if let Some(s) = &r.spectral {
+            let cct =
+                s.cct_k.map_or_else(|| "no colour temperature".to_owned(), |k| format!("{} K", significant(k, 4)));
+            let duv = s.duv.map_or_else(String::new, |d| format!(", Duv {d:.4}"));
+            let xy = s.chromaticity_xy.map_or_else(String::new, |[x, y]| format!(", x {x:.4}, y {y:.4}"));
+            let _ = writeln!(out, "{:width$}  {cct}{duv}{xy}", "");
+        }
+        if let Some((relative, false)) = r.target {
+            let _ =
+                writeln!(out, "{:width$}  the target of {} % was not reached", "", significant(100.0 * relative, 3));
+        }
+        if r.faults.count() > 0 {
+            let _ = writeln!(
+                out,
+                "{:width$}  {} samples were no numbers or negative and were left out",
+                "",
+                r.faults.count()
+            );
+        }
+    }
+    let bands = built.scene.bands().len();
+    let error = built
+        .wavelength_error
+        .map_or_else(String::new, |e| format!(" (error of their sum up to {})", significant(e, 2)));
+    let _ = writeln!(out, "\n{bands} wavelengths on every path{error}");
+    out
+}
+
+/// What a scene holds: `--check`.
+#[must_use]
+pub fn contents(built: &Built) -> Value {
+    let q = &built.quantities;
+    let dot = |values: &[f64], weights: &[f64]| values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
+    let mut flux = vec![0.0; built.scene.bands().len()];
+    let lights: Vec<Value> = (built.scene.lights().iter().enumerate())
+        .map(|(n, light)| {
+            light.flux(&mut flux);
+            let name = built.light_names.get(n).cloned();
+            json!({"name": name, "flux_lm": dot(&flux, &q.luminous), "flux_w": dot(&flux, &q.radiant)})
+        })
+        .collect();
+    let sensors: Vec<Value> = (built.instruments.iter())
+        .map(|i| {
+            let (kind, count) = match &i.kind {
+                Kind::Meter(m) => (crate::render::reading::quantity(&m.response).0, 1),
+                Kind::Grid { meters, .. } => (crate::render::reading::quantity(&meters[0].response).0, meters.len()),
+                Kind::Camera(c) => ("picture", c.width() as usize * c.height() as usize),
+            };
+            json!({"name": i.name, "kind": kind, "points": count})
+        })
+        .collect();
+    json!({
+        "surfaces": built.scene.surfaces().shapes().len(),
+        "lights": lights,
+        "sensors": sensors,
+        "model": model(built),
+    })
+}
+
+/// What a scene holds, for people.
+#[must_use]
+pub fn contents_text(built: &Built) -> String {
+    let contents = contents(built);
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(out, "{} surfaces", built.scene.surfaces().shapes().len());
+    for light in contents["lights"].as_array().into_iter().flatten() {
+        let figure = |key: &str| significant(light[key].as_f64().unwrap_or(0.0), 5);
+        let name = light["name"].as_str().unwrap_or("light");
+        let _ = writeln!(out, "light   {name}: {} lm, {} W", figure("flux_lm"), figure("flux_w"));
+    }
+    for sensor in contents["sensors"].as_array().into_iter().flatten() {
+        let (name, kind) = (sensor["name"].as_str().unwrap_or(""), sensor["kind"].as_str().unwrap_or(""));
+        let _ = writeln!(out, "sensor  {name}: {kind}, {} points", sensor["points"]);
+    }
+    let bands = built.scene.bands();
+    let error = built
+        .wavelength_error
+        .map_or_else(String::new, |e| format!(", error of their sum up to {}", significant(e, 2)));
+    let _ = writeln!(out, "{} wavelengths, all on every path{error}", bands.len());
+    out
+}
