@@ -7,8 +7,12 @@ use photopic::brdf::lambert::Lambert;
 use photopic::render::bands::Bands;
 use photopic::render::emission::Emission;
 use photopic::render::estimate::Figure;
+use photopic::render::integrator::path::Limits;
 use photopic::render::light::Light;
+use photopic::render::light::bounding::BoundingSphere;
+use photopic::render::light::environment::Environment;
 use photopic::render::light::point::Point;
+use photopic::render::light::sky::{Sky, SkyType};
 use photopic::render::material::Material;
 use photopic::render::material::opaque::Opaque;
 use photopic::render::measure::{Board, Meter, Place, Settings, Target};
@@ -63,10 +67,14 @@ fn at(position: DVec3, axis: DVec3) -> Place {
 
 /// What a meter reads, run until its standard error is small enough.
 fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
-    let settings = Settings::new(seed, photopic::render::integrator::path::Limits::default(), 1);
+    read_to(scene, place, seed, PRECISION)
+}
+
+fn read_to(scene: &Scene, place: Place, seed: u64, relative: f64) -> Figure {
+    let settings = Settings::new(seed, Limits::default(), 1);
     let meter = Meter { place, response: Response::Planar };
     let mut board = Board::new(scene, &settings, Share::WHOLE, vec![(0, meter)]);
-    let target = Target { relative: PRECISION, meters: vec![0], weights: vec![1.0] };
+    let target = Target { relative, meters: vec![0], weights: vec![1.0] };
     assert!(board.sample_to(&target, 1 << 20, |_, _| ()), "{:?}", board.estimate(0).figure(&[1.0]));
     assert_eq!(board.estimate(0).faults().count(), 0, "no faulty samples");
     board.estimate(0).figure(&[1.0])
@@ -158,4 +166,91 @@ fn a_glowing_enclosure() {
         let expected = expected.as_f64().expect("a number") * std::f64::consts::PI;
         agrees(figure, expected, "enclosure");
     }
+}
+
+/// A black ball hides part of a uniform sky.
+#[test]
+fn an_occluded_sky() {
+    let Some(cases) = cases() else { return };
+    let ball = Sphere::new(DVec3::new(0.0, 0.0, 2.0), 1.0).expect("a ball");
+    let around = BoundingSphere::new(DVec3::ZERO, 10.0).expect("a sphere");
+    let sky = Environment::constant(&[1000.0], around).expect("a sky");
+    let scene = scene(vec![part(ball, 0.0, None)], vec![Arc::new(sky)]);
+    let figure = read(&scene, at(DVec3::ZERO, DVec3::Z), 7);
+    agrees(figure, value(&cases, "sphere_occluder_R1_h2_uniform_sky"), "occluded sky");
+}
+
+/// The traditional overcast sky on horizontal and vertical surfaces.
+#[test]
+fn an_overcast_sky() {
+    let Some(cases) = cases() else { return };
+    let around = BoundingSphere::new(DVec3::ZERO, 10.0).expect("a sphere");
+    let kind = SkyType::new(16).expect("the overcast sky");
+    let sky = Sky::from_zenith(kind, DVec3::Z, DVec3::Z, &[1.0], around).expect("a sky");
+    let scene = scene(Vec::new(), vec![Arc::new(sky)]);
+    agrees(read(&scene, at(DVec3::ZERO, DVec3::Z), 9), value(&cases, "CIE_overcast_Eh_over_Lz"), "horizontal");
+    agrees(read(&scene, at(DVec3::ZERO, DVec3::X), 9), value(&cases, "CIE_overcast_Ev_over_Lz"), "vertical");
+}
+
+/// A flat spectral radiance of 1 W/(m²·sr·nm) from everywhere: a spot meter reads the observer's own sum, 683.002 applied once.
+#[test]
+fn a_flat_spectral_radiance() {
+    let Some(cases) = cases() else { return };
+    let bands = Bands::uniform(360.0, 1.0);
+    let v = photopic::photometry::luminous::Efficiency::default().weighting();
+    let weights: Vec<f64> = bands.weights(&v).into_iter().map(|w| w * photopic::constants::K_M).collect();
+    let around = BoundingSphere::new(DVec3::ZERO, 10.0).expect("a sphere");
+    let sky = Environment::constant(&vec![1.0; bands.len()], around).expect("a sky");
+    let scene = Scene::new(bands, Vec::new(), vec![Arc::new(sky)]);
+    let settings = Settings::new(1, Limits::default(), scene.bands().len());
+    let meter = Meter { place: at(DVec3::ZERO, DVec3::X), response: Response::Cone { sin: 0.01 } };
+    let mut board = Board::new(&scene, &settings, Share::WHOLE, vec![(0, meter)]);
+    board.sample_until(2);
+    let figure = board.estimate(0).figure(&weights);
+    // The case prints 72 983.5 cd/m²; every sample is the same.
+    assert!((figure.value - value(&cases, "flat_1_W_m2_nm_lx")).abs() < 0.05, "{figure:?}");
+    assert!(figure.standard_error < 1e-9 * figure.value, "{figure:?}");
+}
+
+/// A point, and a small diffuse disk of the same intensity, light a meter alike, and the disk as a luminaire would.
+#[test]
+fn a_point_and_a_small_disk_agree() {
+    let expected = 100.0 / 4.0;
+    let above = DVec3::new(0.0, 0.0, 2.0);
+    let point = scene(Vec::new(), vec![Arc::new(Point::new(above, &[100.0]).expect("a lamp"))]);
+    agrees(read(&point, at(DVec3::ZERO, DVec3::Z), 10), expected, "point");
+    // I = L A: a disk of 1 mm differs from a point by (r/d)² = 2.5e-7.
+    let radius = 1e-3;
+    let radiance = 100.0 / (std::f64::consts::PI * radius * radius);
+    let disk = Disk::new(above, DVec3::NEG_Z, radius).expect("a disk");
+    let disk = scene(vec![part(disk, 0.0, Some(radiance))], Vec::new());
+    let figure = read(&disk, at(DVec3::ZERO, DVec3::Z), 10);
+    assert!((figure.value / expected - 1.0).abs() < 3.0 * figure.standard_error / expected + 2.5e-7, "{figure:?}");
+}
+
+/// The rectangle and the point hold at every size about the origin, and a case of 1 m a thousand kilometres away.
+#[test]
+fn sizes_and_places() {
+    let Some(cases) = cases() else { return };
+    let over_l = value(&cases, "rect_centre_1x1_h1_E_over_L");
+    let place = |size: f64, origin: DVec3| {
+        let square = Rectangle::new(origin + DVec3::Z * size, DVec3::Y * size, DVec3::X * size).expect("a square");
+        let below = Rectangle::new(origin - (DVec3::X + DVec3::Y) * size, DVec3::X * 3.0 * size, DVec3::Y * 3.0 * size);
+        // The meter lies on a black floor.
+        let scene = scene(vec![part(square, 0.0, Some(1.0)), part(below.expect("a floor"), 0.0, None)], Vec::new());
+        let middle = origin + DVec3::new(0.5, 0.5, 0.0) * size;
+        let point = SurfacePoint::meter(middle, DVec3::Z, scene.rounding_at(middle));
+        read_to(&scene, Place::Point(point), 11, 2e-5)
+    };
+    for size in [1e-8, 1e-5, 1e-2, 1.0, 1e2, 1e5, 1e8] {
+        let figure = place(size, DVec3::ZERO);
+        assert!((figure.value / over_l - 1.0).abs() < 1e-4, "size {size}: {figure:?}, expected {over_l}");
+        let lamp = Point::new(DVec3::Z * 2.0 * size, &[1000.0 * size * size]).expect("a lamp");
+        let lamp = scene(Vec::new(), vec![Arc::new(lamp)]);
+        let expected = value(&cases, "point_I1000_h2_r1");
+        let figure = read(&lamp, at(DVec3::X * size, DVec3::Z), 11);
+        assert!((figure.value / expected - 1.0).abs() < 1e-12, "size {size}: {figure:?}");
+    }
+    let figure = place(1.0, DVec3::new(1e6, -1e6, 1e6));
+    assert!((figure.value / over_l - 1.0).abs() < 1e-4, "far away: {figure:?}");
 }

@@ -4,4 +4,6 @@
 mod common;
 
 mod analytic;
+mod cli;
+mod honest;
 mod shapes;

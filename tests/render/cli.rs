@@ -1,0 +1,139 @@
+//! `photopic render` as a user runs it.
+
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use predicates::str::contains;
+use serde_json::Value;
+
+fn photopic() -> Command {
+    Command::cargo_bin("photopic").expect("the binary")
+}
+
+fn office() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes/office.toml")
+}
+
+/// A small scene whose reading is known: 1000 cd, 2 m above, straight below.
+const LAMP: &str = r#"
+[[light]]
+name = "lamp"
+point = { at = [0, 0, 2], intensity = "1000 cd" }
+spectrum = "A"
+[[sensor]]
+name = "below"
+spectrum = true
+illuminance = { at = [0, 0, 0] }
+"#;
+
+fn scene(folder: &tempfile::TempDir, text: &str) -> PathBuf {
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, text).expect("a scene is written");
+    path
+}
+
+fn json(command: &mut Command) -> Value {
+    let output = command.output().expect("it runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// E = I/d² = 250 lx exactly; illuminant A is at 2856 K by definition, to the error of the wavelengths carried.
+#[test]
+fn a_lamp_is_read_with_its_colour() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(&folder, LAMP);
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "64"]));
+    let sensor = &out["results"][0]["sensors"][0];
+    assert_eq!((sensor["name"].as_str(), sensor["unit"].as_str()), (Some("below"), Some("lx")));
+    let value = sensor["value"].as_f64().expect("a number");
+    assert!((value - 250.0).abs() < 1e-9, "{value}");
+    assert!(sensor["standard_error"].as_f64().expect("a number") < 1e-9);
+    let cct = sensor["spectrum"]["cct_k"].as_f64().expect("a number");
+    assert!((cct - 2856.0).abs() < 15.0, "{cct}");
+    assert_eq!(
+        sensor["spectrum"]["values"].as_array().map(Vec::len),
+        out["results"][0]["model"]["wavelengths"]["count"].as_u64().map(|n| n as usize)
+    );
+    assert_eq!(out["command"], "render");
+    assert_eq!(out["inputs"][0]["sha256"].as_str().map(str::len), Some(64));
+}
+
+/// The flux stated is the flux that `--check` prints.
+#[test]
+fn a_check_says_what_the_scene_holds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = LAMP.replace("intensity = \"1000 cd\"", "flux = \"800 lm\"");
+    let path = scene(&folder, &text);
+    let out = json(photopic().arg("render").arg(&path).args(["--check", "--json"]));
+    let light = &out["results"][0]["lights"][0];
+    assert_eq!(light["name"], "lamp");
+    assert!((light["flux_lm"].as_f64().expect("a number") - 800.0).abs() < 1e-9, "{light}");
+    assert!(out["results"][0]["sensors"][0]["kind"] == "illuminance");
+}
+
+#[test]
+fn the_shipped_office_is_rendered_the_same_by_any_number_of_threads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |threads: &str, name: &str| {
+        let to = folder.path().join(name);
+        std::fs::create_dir(&to).expect("a folder");
+        let mut command = photopic();
+        command.arg("render").arg(office()).args(["--json", "--samples", "1", "--meter-samples", "64", "--folder"]);
+        let out = json(command.arg(&to).env("RAYON_NUM_THREADS", threads));
+        for file in ["office.exr", "office-luminance.png", "office.png"] {
+            assert!(to.join(file).is_file(), "{file}");
+        }
+        (out["results"][0]["sensors"].clone(), std::fs::read(to.join("office.exr")).expect("the picture"))
+    };
+    let (one, three) = (run("1", "one"), run("3", "three"));
+    assert_eq!(one.0, three.0);
+    assert!(one.1 == three.1, "the pictures differ");
+    let names: Vec<&str> = one.0.as_array().expect("sensors").iter().filter_map(|s| s["name"].as_str()).collect();
+    assert_eq!(names, ["desk", "wall spot", "eye", "view"]);
+    assert_eq!(one.0[0]["grid"]["values"].as_array().map(Vec::len), Some(4));
+}
+
+#[test]
+fn a_target_out_of_reach_is_exit_code_1() {
+    let mut command = photopic();
+    command.arg("render").arg(office()).args(["--samples", "1", "--meter-samples", "64", "--target", "0.001 % lux"]);
+    let folder = tempfile::tempdir().expect("a folder");
+    command.arg("--folder").arg(folder.path()).assert().code(1).stdout(contains("was not reached"));
+}
+
+#[test]
+fn mistakes_are_told_with_file_line_and_column() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (from, to, message) in [
+        ("intensity", "intensty", ":4:27: unknown field `intensty`, expected one of"),
+        ("\"1000 cd\"", "\"1000 lx\"", ":4:39: found `1000 lx`; expected an intensity"),
+        ("spectrum = \"A\"", "spectrum = \"Q\"", "no spectrum is called `Q`"),
+        ("at = [0, 0, 0] }", "on = \"floor\" }", "no shape but a box is called `floor`"),
+        ("illuminance = { at = [0, 0, 0] }", "", "sensor `below` has not one kind"),
+        (", intensity = \"1000 cd\"", "", "expected one of them"),
+    ] {
+        assert!(LAMP.contains(from), "{from}");
+        let path = scene(&folder, &LAMP.replacen(from, to, 1));
+        photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message)).stdout("");
+    }
+    let path = scene(&folder, "");
+    photopic().arg("render").arg(&path).assert().code(2).stderr(contains("missing field `sensor`"));
+    photopic().args(["render", "nowhere.toml"]).assert().code(2).stderr(contains("cannot be read"));
+    let path = scene(&folder, LAMP);
+    photopic()
+        .arg("render")
+        .arg(&path)
+        .args(["--target", "1 % nits"])
+        .assert()
+        .code(2)
+        .stderr(contains("no meter is meant"));
+    photopic().arg("render").arg(&path).args(["--target", "1"]).assert().code(2);
+}
+
+#[test]
+fn the_schema_is_json() {
+    let output = photopic().args(["render", "--schema"]).output().expect("it runs");
+    let schema: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+}
