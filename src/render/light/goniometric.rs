@@ -556,6 +556,21 @@ mod tests {
     }
 
     #[test]
+    fn the_square_law_holds_from_1e_8_to_1e8_metres() {
+        let direction = DVec3::new(0.48, -0.6, -0.64);
+        let table = tables().swap_remove(0);
+        let place = Placement::new(DVec3::ZERO, Orientation::DOWN, 1.0).expect("a placement");
+        let light = Goniometric::new(table.clone(), &place, &[1.0]).expect("a light");
+        for exponent in -8..=8 {
+            let r = 10.0_f64.powi(exponent);
+            let e = check::irradiance_at(&light, r * direction, -direction)[0] * r * r;
+            assert!((e / table.towards(direction) - 1.0).abs() < 1e-13, "{r}: {e}");
+            assert!(light.importance(r * direction).is_finite());
+        }
+        assert_eq!(light.sample_towards(DVec3::ZERO, [0.5; 3], &mut [0.0]), None);
+    }
+
+    #[test]
     fn units_are_scaled_and_bad_tables_refused() {
         let s = per_unit(&[1.0, 3.0], &[683.0 * 10.0, 68.3 * 10.0]).expect("a scale");
         assert!((s[0] * 6830.0 + s[1] * 683.0 - 1.0).abs() < 1e-15);
