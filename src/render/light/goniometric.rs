@@ -144,20 +144,13 @@ impl Goniometric {
             };
             spectra.weighted(&weights).map(|table| table.scaled(placement.dimming()))
         };
+        let beyond = |_| Error::Value { what: "a spectral intensity", found: f64::INFINITY, expected: "finite sums" };
         let tables: Vec<Distribution> = (bands.wavelengths_nm().iter().zip(bands.widths()))
             .map(|(wavelength_nm, width)| band(*wavelength_nm, width))
             .collect::<Result<_, _>>()
-            .map_err(|_| Error::Value {
-                what: "a spectral intensity",
-                found: f64::INFINITY,
-                expected: "finite sums",
-            })?;
+            .map_err(beyond)?;
         let sums = (0..spectra.directions()).map(|i| tables.iter().map(|t| t.values()[i]).sum()).collect();
-        let table = spectra.frame().with_values(sums).map_err(|_| Error::Value {
-            what: "a spectral intensity",
-            found: f64::INFINITY,
-            expected: "finite sums",
-        })?;
+        let table = spectra.frame().with_values(sums).map_err(beyond)?;
         let flux = tables.iter().map(Distribution::total_flux).collect();
         Self::build(table, placement, Spectra::PerBand(tables), flux)
     }
