@@ -5,7 +5,7 @@
 
 A cube of 512 x 512 pixels and 31 bands is made with numpy. OpenEXR and colour-science's reader of the layout of Fichet et al.
 read the EXR that photopic makes of it, Spectral Python the ENVI images in each interleave, numpy the arrays; colour-science
-calculates X, Y, Z of 1000 random pixels, and of reflectances under D65. Radiance (the pyradiance wheel), OpenEXR and OpenImageIO
+calculates X, Y, Z of 1000 random pixels, and of reflectances under D65, and with numpy how far two cubes are apart. Radiance (the pyradiance wheel), OpenEXR and OpenImageIO
 read the pictures in colours, and are read. Where ../shared/image stands beside the checkout, its
 files, written by other programs, are read as well. Exit status 1 when a line fails, 2 when nothing could be compared.
 """
@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import json
 import subprocess
 import sys
 import tempfile
@@ -142,6 +143,56 @@ def own_files(checks, folder):
     checks.line("XYZ of reflectance under D65, against numpy on colour's tables", relative(got, want), 1e-6)
 
 
+def comparison(checks, folder):
+    """`image compare` of two cubes against numpy, and ΔE2000 against colour-science."""
+    rng = np.random.default_rng(20260103)
+    reference = (rng.uniform(0.2, 1, (64, 80, 1)) * rng.uniform(0.1, 1, (64, 80, 31))).astype(np.float32)
+    other = (reference * rng.normal(1, 0.02, reference.shape)).astype(np.float32)
+    for name, cube in (("reference", reference), ("other", other)):
+        write_envi(folder / f"{name}.hdr", cube, "data units = W/m2/sr/nm\n")
+    # White has the chromaticity of D65 as IEC 61966-2-1 prints it, and a luminance of our choice.
+    white_y = 30000.0
+    arguments = ["compare", folder / "reference.hdr", folder / "other.hdr", "--rule", "summation", "--lab-white", white_y]
+    command = [checks.binary, "-q", "image", *map(str, arguments), "--json"]
+    got = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["results"][0]
+
+    def figures(a, b):
+        rmse = np.sqrt(np.mean((b - a) ** 2))
+        return {
+            "mean_difference": np.mean(b - a),
+            "rmse": rmse,
+            "relative_rmse": np.sqrt(np.sum((b - a) ** 2) / np.sum(a**2)),
+            "mean_relative": np.mean(np.abs(b - a) / np.abs(a)),
+            "max_relative": np.max(np.abs(b - a) / np.abs(a)),
+            "psnr_db": 20 * np.log10(a.max() / rmse),
+        }
+
+    a, b = reference.astype(float), other.astype(float)
+    assert len(got["planes"]) == 31
+    worst = max(
+        relative(plane[key], want)
+        for k, plane in enumerate(got["planes"])
+        for key, want in figures(a[..., k], b[..., k]).items()
+    )
+    checks.line("compare: RMSE, relative errors and PSNR of 31 bands, against numpy", worst, 1e-9)
+    # The luminance of each pixel is rounded to a float, 6e-8 of it; their differences are 2 % of it and less.
+    xyz = [cube @ weights() for cube in (a, b)]
+    want = figures(xyz[0][..., 1], xyz[1][..., 1])
+    scale = xyz[0][..., 1].mean()
+    difference = abs(got["photopic"]["rmse"] - want["rmse"]) / scale
+    checks.line("compare: RMSE of the luminance, relative to its mean", difference, 1.2e-7)
+    checks.line("compare: PSNR of the luminance, dB", abs(got["photopic"]["psnr_db"] - want["psnr_db"]), 1e-4)
+    lab = [colour.XYZ_to_Lab(v / white_y, np.array([0.3127, 0.3290])) for v in xyz]
+    delta_e = colour.delta_E(*lab, method="CIE 2000")
+    told = got["delta_e_2000"]
+    # X, Y, Z are rounded to floats: a third of 6e-8 in their cube roots, twice 500 times that in a* of either image, 4e-5.
+    checks.line("compare: mean ΔE2000, against colour-science", abs(told["mean"] - delta_e.mean()), 1e-4)
+    checks.line("compare: largest ΔE2000", abs(told["max"] - delta_e.max()), 1e-4)
+    for percent in (50, 95, 99):
+        want = np.percentile(delta_e, percent)
+        checks.line(f"compare: percentile {percent} of ΔE2000", abs(told[f"p{percent}"] - want), 1e-4)
+
+
 def shared_files(checks, folder):
     if not SHARED.is_dir():
         print("skipped: ../shared/image is not here")
@@ -199,6 +250,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         own_files(checks, Path(folder))
         pictures(checks, Path(folder))
+        comparison(checks, Path(folder))
         shared_files(checks, Path(folder))
     print("all hold" if not checks.failed else f"{checks.failed} fail")
     sys.exit(1 if checks.failed else 0)

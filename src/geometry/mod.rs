@@ -11,4 +11,5 @@
 //! - Lengths are in metres, angles in radians unless a name says `_deg`.
 
 pub mod direction;
+pub mod lens;
 pub mod solid_angle;

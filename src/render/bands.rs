@@ -1,4 +1,15 @@
-//! The wavelengths that a render carries.
+//! The wavelengths that a render carries, and how few of them will do.
+//!
+//! Every reading is an integral over wavelength, Σ_b w_b · W(λ_b) · L_b, with nodes λ_b and weights w_b that are chosen before the
+//! render. Colour matching functions fade out at both ends of the visible range, so that a sum over a few equally spaced nodes comes
+//! close to the sum at 1 nm. How few suffice depends on the spectra of the scene, so [`Bands::choose`] tries, on the products of
+//! emission and reflectances that light can meet, steps and where to begin, against the sum at 1 nm.
+
+use crate::spectrum::integrate::Weighting;
+use crate::spectrum::{Sampling, Spectrum};
+
+/// The range over which densities are carried, nm: that of the CIE's tables of V(λ) and of the colour matching functions.
+pub const RANGE_NM: (f64, f64) = (360.0, 830.0);
 
 /// What a band's value is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +23,7 @@ pub enum Width {
     Line,
 }
 
-/// The bands of a render, ascending wavelengths.
+/// The bands of a render: the nodes of densities, ascending, then the lines, ascending.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bands {
     wavelengths_nm: Vec<f64>,
@@ -20,18 +31,88 @@ pub struct Bands {
 }
 
 impl Bands {
-    /// Nodes of a density at the midpoints of `count` equal parts of a range.
+    /// The nodes from `first_nm` on, a step apart, up to the end of [`RANGE_NM`]. From 360 nm at 1 nm they are the entries of the CIE's
+    /// tables.
     ///
     /// # Panics
-    /// For an empty range or no band.
+    /// For a step that is not above 0 or leaves no node.
     #[must_use]
-    pub fn midpoints(low_nm: f64, high_nm: f64, count: usize) -> Self {
-        assert!(low_nm < high_nm && count > 0, "a range of wavelengths and at least one band");
-        #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
-        let step = (high_nm - low_nm) / count as f64;
-        #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
-        let wavelengths_nm = (0..count).map(|i| low_nm + (i as f64 + 0.5) * step).collect();
-        Self { wavelengths_nm, widths: vec![Width::Density { nm: step }; count] }
+    pub fn uniform(first_nm: f64, step_nm: f64) -> Self {
+        assert!(step_nm > 0.0, "a step between wavelengths is above 0 nm");
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of nodes")]
+        let count = ((RANGE_NM.1 - first_nm) / step_nm + 1e-9).floor() as u32 + 1;
+        Self::nodes((0..count).map(|i| first_nm + f64::from(i) * step_nm).collect(), step_nm)
+    }
+
+    /// Nodes at the wavelengths given, ascending, each standing for `step_nm`.
+    ///
+    /// # Panics
+    /// For no wavelength.
+    #[must_use]
+    pub fn nodes(wavelengths_nm: Vec<f64>, step_nm: f64) -> Self {
+        assert!(!wavelengths_nm.is_empty(), "at least one band");
+        let widths = vec![Width::Density { nm: step_nm }; wavelengths_nm.len()];
+        Self { wavelengths_nm, widths }
+    }
+
+    /// No densities, only the lines at the wavelengths given, ascending.
+    ///
+    /// # Panics
+    /// For no wavelength.
+    #[must_use]
+    pub fn lines(wavelengths_nm: Vec<f64>) -> Self {
+        assert!(!wavelengths_nm.is_empty(), "at least one band");
+        let widths = vec![Width::Line; wavelengths_nm.len()];
+        Self { wavelengths_nm, widths }
+    }
+
+    /// These bands and, behind them, lines.
+    #[must_use]
+    pub fn and_lines(mut self, wavelengths_nm: &[f64]) -> Self {
+        self.wavelengths_nm.extend_from_slice(wavelengths_nm);
+        self.widths.extend(wavelengths_nm.iter().map(|_| Width::Line));
+        self
+    }
+
+    /// The fewest equally spaced nodes on which the integrals of all `spectra` agree with the sum at 1 nm, with the greatest
+    /// difference that is left: of the weightings' integrals, relative to the largest of them for each spectrum.
+    ///
+    /// Each spectrum is a function of wavelength (nm). The bands are those of the largest step whose difference is at most
+    /// `tolerance`, begun where the difference is least; at 1 nm there is none.
+    #[must_use]
+    pub fn choose(spectra: &[&dyn Fn(f64) -> f64], weightings: &[Weighting], tolerance: f64) -> (Self, f64) {
+        const STEPS_NM: [u32; 14] = [40, 30, 25, 20, 18, 16, 15, 12, 10, 8, 5, 4, 3, 2];
+        let finest = Self::uniform(RANGE_NM.0, 1.0);
+        let values: Vec<Vec<f64>> =
+            spectra.iter().map(|s| finest.wavelengths_nm.iter().map(|&nm| s(nm)).collect()).collect();
+        let weights: Vec<Vec<f64>> = weightings.iter().map(|w| finest.weights(w)).collect();
+        // Both rules are sums over entries of the same table: of every entry, or of one in `step` from `phase` on.
+        let sum = |w: &[f64], v: &[f64], phase: usize, step: usize| -> f64 {
+            (w.iter().zip(v).skip(phase).step_by(step)).map(|(w, v)| w * v).sum()
+        };
+        let difference = |phase: usize, step: usize| -> f64 {
+            let mut worst = 0.0_f64;
+            for v in &values {
+                let exact: Vec<f64> = weights.iter().map(|w| sum(w, v, 0, 1)).collect();
+                let scale = exact.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+                for (w, exact) in weights.iter().zip(&exact) {
+                    #[expect(clippy::cast_precision_loss, reason = "a step of a few nanometres")]
+                    let coarse = sum(w, v, phase, step) * step as f64;
+                    worst = worst.max(if scale > 0.0 { (coarse - exact).abs() / scale } else { 0.0 });
+                }
+            }
+            worst
+        };
+        for step in STEPS_NM {
+            let (worst, phase) = (0..step)
+                .map(|phase| (difference(phase as usize, step as usize), phase))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .unwrap_or((f64::INFINITY, 0));
+            if worst <= tolerance {
+                return (Self::uniform(RANGE_NM.0 + f64::from(phase), f64::from(step)), worst);
+            }
+        }
+        (finest, 0.0)
     }
 
     /// Wavelengths, nm.
@@ -51,5 +132,104 @@ impl Bands {
     #[expect(clippy::len_without_is_empty, reason = "there is always one band")]
     pub fn len(&self) -> usize {
         self.wavelengths_nm.len()
+    }
+
+    /// What each band adds to the integral of a spectrum with a weighting, per unit of the band's value: without any factor K_m.
+    #[must_use]
+    pub fn weights(&self, weighting: &Weighting) -> Vec<f64> {
+        (self.wavelengths_nm.iter().zip(&self.widths))
+            .map(|(&nm, width)| {
+                weighting.at(nm)
+                    * match *width {
+                        Width::Density { nm } => nm,
+                        Width::Line => 1.0,
+                    }
+            })
+            .collect()
+    }
+
+    /// The values of an emission spectrum in the bands: of a density, straight lines between its samples and 0 beyond them, at the
+    /// nodes; of lines, their amounts in the bands of their wavelengths.
+    ///
+    /// # Errors
+    /// The wavelength of a line for which there is no band.
+    pub fn emission(&self, spectrum: &Spectrum) -> Result<Vec<f64>, f64> {
+        match spectrum.sampling() {
+            Sampling::Density => {
+                let table = as_function(spectrum);
+                Ok((self.wavelengths_nm.iter().zip(&self.widths))
+                    .map(|(&nm, width)| if matches!(width, Width::Line) { 0.0 } else { table.at(nm) })
+                    .collect())
+            }
+            Sampling::Lines => {
+                let mut values = vec![0.0; self.len()];
+                for (&nm, amount) in spectrum.wavelengths_nm().iter().zip(spectrum.values()) {
+                    let is_band = |b: &usize| self.widths[*b] == Width::Line && self.wavelengths_nm[*b] == nm;
+                    let band = (0..self.len()).find(is_band).ok_or(nm)?;
+                    values[band] += amount;
+                }
+                Ok(values)
+            }
+        }
+    }
+}
+
+/// A density as a function of wavelength: straight lines between its samples, 0 beyond them.
+#[must_use]
+pub fn as_function(spectrum: &Spectrum) -> Weighting {
+    let (mut nm, mut values) = (spectrum.wavelengths_nm().to_vec(), spectrum.values().to_vec());
+    if nm.len() == 1 {
+        // One sample of a density has no neighbours to draw a line to: it holds at its own wavelength alone.
+        nm.push(nm[0].next_up());
+        values.push(0.0);
+    }
+    Weighting::table(nm, values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constants::K_M;
+    use crate::photometry::luminous::Efficiency;
+
+    fn v() -> Weighting {
+        Efficiency::default().weighting()
+    }
+
+    /// Issue's figure: the observer's own sum at 1 nm, 683.002 applied once: 72 983.5 lx for 1 W/(m²·nm).
+    #[test]
+    fn a_flat_spectrum_reads_the_observers_sum() {
+        let bands = Bands::uniform(360.0, 1.0);
+        assert_eq!((bands.len(), bands.wavelengths_nm()[0], bands.wavelengths_nm()[470]), (471, 360.0, 830.0));
+        let lux = K_M * bands.weights(&v()).iter().sum::<f64>();
+        assert!((lux - 72_983.5).abs() < 0.05, "{lux}");
+    }
+
+    /// Twenty-odd nodes integrate smooth spectra to 1e-3 of what 471 do; a narrow line-like peak needs more.
+    #[test]
+    fn few_nodes_suffice_for_smooth_spectra_only() {
+        let smooth = |nm: f64| 1.0 + 0.5 * (nm / 70.0).sin();
+        let peaked = |nm: f64| (-((nm - 530.0) / 4.0).powi(2)).exp();
+        let (few, left) = Bands::choose(&[&smooth], &[v()], 1e-3);
+        assert!(few.len() <= 24 && left <= 1e-3, "{} {left}", few.len());
+        let (many, left) = Bands::choose(&[&smooth, &peaked], &[v()], 1e-3);
+        assert!(many.len() > 2 * few.len() && left <= 1e-3, "{} {left}", many.len());
+        assert_eq!(Bands::choose(&[&peaked], &[v()], 0.0).0.len(), 471);
+    }
+
+    #[test]
+    fn lines_go_to_their_own_bands() {
+        let bands = Bands::uniform(365.0, 10.0).and_lines(&[546.074, 555.0]);
+        let lines = Spectrum::lines(crate::spectrum::Grid::new(vec![555.0]).unwrap(), vec![2.0]).unwrap();
+        let values = bands.emission(&lines).unwrap();
+        let lux = K_M * bands.weights(&v()).iter().zip(&values).map(|(w, e)| w * e).sum::<f64>();
+        // V(555 nm) = 1 in the CIE's table.
+        assert!((lux - 2.0 * 683.002).abs() < 1e-9, "{lux}");
+        let other = Spectrum::lines(crate::spectrum::Grid::new(vec![600.0]).unwrap(), vec![2.0]).unwrap();
+        assert_eq!(bands.emission(&other), Err(600.0));
+        let density =
+            Spectrum::density(crate::spectrum::Grid::new(vec![300.0, 900.0]).unwrap(), vec![1.0, 1.0]).unwrap();
+        let values = bands.emission(&density).unwrap();
+        assert_eq!((values[0], values[47], values[48]), (1.0, 0.0, 0.0));
     }
 }

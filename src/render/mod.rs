@@ -16,11 +16,30 @@
 //! | [`shape`] | closed-form shapes and meshes: crossing, area, sampling |
 //! | [`light`] | what lights the scene and is no shape: points, spots, luminaires, skies, pictures |
 //! | [`material`] | scattering at a surface, reflection and transmission |
+//! | [`emission`] | what a surface emits |
+//! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
+//! | [`description`] | scenes in TOML |
+//! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
+//! | [`sensor`] | cameras, and what meters make of the light around them |
+//! | [`integrator`] | solvers |
+//! | [`estimate`], [`measure`] | readings with their standard errors |
 
+pub mod accelerate;
 pub mod bands;
+pub mod build;
+pub mod description;
+pub mod emission;
+pub mod estimate;
+pub mod film;
+pub mod integrator;
 pub mod light;
 pub mod material;
+pub mod measure;
 pub mod ray;
 pub mod sampler;
+pub mod scene;
+pub mod sensor;
 pub mod shape;
+pub mod spool;
+pub mod tree;

@@ -2,6 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::geometry::direction;
+
 /// A half-line: the points `origin + t · direction`, t > 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
@@ -48,6 +50,13 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// A point that a meter stands at, its axis along the unit vector `axis`; `error` as in [`SurfacePoint::error`].
+    #[must_use]
+    pub fn meter(position: DVec3, axis: DVec3, error: f64) -> Self {
+        let (tangent, _) = direction::tangents(axis);
+        Self { position, error, normal: axis, shading: axis, tangent, uv: DVec2::ZERO }
+    }
+
     /// The origin of a ray that leaves the surface in `direction`: moved off the surface, along the geometric normal, by more than
     /// the rounding of the point itself, so that the ray starts on the side that it leaves to.
     ///

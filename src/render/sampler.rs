@@ -27,6 +27,12 @@ impl Sampler {
         Self { key: [k0, k1], index, group: 0 }
     }
 
+    /// Starts the sample `index` of the same stream.
+    pub fn start(&mut self, index: u64) {
+        self.index = index;
+        self.group = 0;
+    }
+
     /// The next group of four numbers, each uniform in [0, 1), in which the samples of a stream are stratified together.
     pub fn four(&mut self) -> [f64; 4] {
         let epoch = words(self.index / u64::from(EPOCH))[0];
@@ -105,8 +111,9 @@ mod tests {
         assert_ne!(first, Sampler::new(1, 1, u64::from(EPOCH)).four());
         assert_ne!(first, Sampler::new(2, 1, 0).four());
         assert_ne!(first, Sampler::new(1, 2, 0).four());
-        let mut sampler = Sampler::new(1, 1, 0);
-        sampler.four();
+        let mut sampler = Sampler::new(1, 1, 7);
+        sampler.start(0);
+        assert_eq!(first, sampler.four());
         assert_ne!(first, sampler.four());
     }
 }

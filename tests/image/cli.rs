@@ -51,6 +51,35 @@ fn luminance_in_every_format_is_that_of_the_pixels() {
 }
 
 #[test]
+fn info_shows_the_image_where_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    cube(folder.path());
+    let run = |look: &str, no_color: &str| {
+        let args = ["image", "info", "cube.hdr", look];
+        let out = photopic().current_dir(&folder).args(args).env("NO_COLOR", no_color).assert().success();
+        String::from_utf8(out.get_output().stdout.clone()).expect("text")
+    };
+    let plain = {
+        let out = photopic().current_dir(&folder).args(["image", "info", "cube.hdr"]).assert().success();
+        String::from_utf8(out.get_output().stdout.clone()).expect("text")
+    };
+    // In a pipe it is shown only where that is said; the figures stand before it.
+    assert_eq!(run("--look", ""), plain);
+    let shown = run("--look=always", "");
+    assert!(shown.starts_with(&plain) && shown.contains('▀') && shown.contains("cd/m²"), "{shown}");
+    let without = run("--look=always", "1");
+    assert!(without.starts_with(&plain) && without.len() > plain.len() && !without.contains('\x1b'), "{without}");
+    // An image without luminance is described all the same.
+    fs::write(
+        folder.path().join("bare.hdr"),
+        "ENVI\nsamples = 3\nlines = 2\nbands = 3\ndata type = 4\nbyte order = 0\ninterleave = bip\n",
+    )
+    .expect("written");
+    fs::copy(folder.path().join("cube.img"), folder.path().join("bare.img")).expect("copied");
+    photopic().current_dir(&folder).args(["image", "info", "bare.hdr", "--look=always"]).assert().success();
+}
+
+#[test]
 fn standard_streams_carry_images() {
     let folder = tempfile::tempdir().expect("a folder");
     cube(folder.path());

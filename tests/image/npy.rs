@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use photopic::image::format::envi::Options;
 use photopic::image::format::npy;
-use photopic::image::{Channel, Content, Description, Meaning, Memory, Source};
+use photopic::image::{Channel, Content, Description, Meaning, Memory, Region, Source};
 
 /// A file as NumPy writes it (NEP 1): magic, version, length of the header, a dictionary padded with blanks to 64 bytes.
 fn file(descr: &str, order: &str, shape: &str, data: &[u8]) -> Vec<u8> {
@@ -41,6 +41,29 @@ fn arrays_are_rows_columns_channels() {
 }
 
 #[test]
+fn arrays_in_fortran_order_have_the_same_indices() {
+    // The first index runs fastest: numbers 0 to 23 in the shape (3, 4, 2) are y + 3 (x + 4 c) at [y, x, c].
+    let data: Vec<u8> = (0_u16..24).flat_map(u16::to_le_bytes).collect();
+    let bytes = file("<u2", "True", "(3, 4, 2)", &data);
+    let image = open(bytes.clone(), vec![500.0, 600.0]).expect("valid");
+    assert_eq!((image.description().width, image.description().height), (4, 3));
+    for (y, x, c) in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (2, 3, 1), (1, 2, 1)] {
+        assert_eq!(image.at(x, y, c), (y + 3 * (x + 4 * c)) as f32, "{y} {x} {c}");
+    }
+    // A part of it, channels the other way round.
+    let mut source = npy::open(Cursor::new(bytes), Vec::new(), Options::default()).expect("valid").value;
+    let mut out = [f32::NAN; 8];
+    source.read(Region { x: 1, y: 1, width: 2, height: 2 }, &[1, 0], &mut out).expect("memory");
+    assert_eq!(out, [16.0, 19.0, 4.0, 7.0, 17.0, 20.0, 5.0, 8.0]);
+    // One channel, as `numpy.asfortranarray` of two dimensions or a transposed array is saved.
+    let data: Vec<u8> = (0_u8..6).collect();
+    assert_eq!(
+        open(file("|u1", "True", "(2, 3)", &data), Vec::new()).expect("valid").samples(),
+        [0.0, 2.0, 4.0, 1.0, 3.0, 5.0]
+    );
+}
+
+#[test]
 fn what_is_written_is_read_again() {
     let channels = (0..3).map(|k| Channel::new(["X", "Y", "Z"][usize::from(k)], "", Meaning::Tristimulus(k))).collect();
     let image = Memory::new(Description::planes(2, 2, channels), (0_u8..12).map(f32::from).collect());
@@ -56,12 +79,12 @@ fn other_arrays_are_refused_with_a_word() {
     let bytes = [0_u8; 96];
     for (file, want) in [
         (file("<c8", "False", "(2, 3, 2)", &bytes), "found `<c8` for `descr`; expected one of"),
-        (file("<f4", "True", "(2, 3, 2)", &bytes), "found an array in Fortran order"),
+        (file("<f4", "maybe", "(2, 3, 2)", &bytes), "found maybe for `fortran_order`; expected True or False"),
         (file("<f4", "False", "(2,)", &bytes), "found (2,) for `shape`; expected (rows, columns, channels)"),
         (file("<f4", "False", "(2, 0, 2)", &bytes), "found (2, 0, 2) for `shape`"),
         (file("<f4", "False", "(2, 3, 5)", &bytes), "found 3 values for the wavelengths; expected 5"),
         (file("<f4", "False", "(20, 30, 3)", &bytes), "found 224 bytes; expected 7328"),
-        (b"\x93NUMPY\x01\x00\xff\xff{".to_vec(), "failed to fill whole buffer"),
+        (b"\x93NUMPY\x01\x00\xff\xff{".to_vec(), "found the end of the file in its header; expected a whole NPY file"),
         (b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(), "found 4294967295 for the length of the header"),
         (b"P6 2 2 255 ....".to_vec(), "found other first bytes; expected an NPY file"),
     ] {

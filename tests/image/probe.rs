@@ -304,6 +304,22 @@ fn every_form_of_output_has_the_same_figures() {
 }
 
 #[test]
+fn places_come_in_the_order_of_the_command_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_cube(folder.path());
+    let places = ["--line", "a=0,0,5,3", "--pixel", "b=5,3", "--rect=c=0,0,2,2", "--pixel", "d=0,0"];
+    let more = ["--circle", "e=3,2,2", "--json", "--polygon", "f=0,0,6,0,3,4", "--line", "g=0,0,1,1"];
+    // The image may stand among them, too.
+    let args = [&["image", "probe"], &places[..], &["cube.hdr"], &more[..]].concat();
+    let probed = json(folder.path(), &args);
+    let results = probed["results"].as_array().expect("a list");
+    let told: Vec<_> = results.iter().map(|r| (r["name"].as_str(), r["shape"]["kind"].as_str())).collect();
+    let kinds = ["line", "pixel", "rectangle", "pixel", "circle", "polygon", "line"].map(Some);
+    let names = ["a", "b", "c", "d", "e", "f", "g"].map(Some);
+    assert_eq!(told, names.into_iter().zip(kinds).collect::<Vec<_>>());
+}
+
+#[test]
 fn what_cannot_be_probed_says_why() {
     let folder = tempfile::tempdir().expect("a folder");
     write_cube(folder.path());

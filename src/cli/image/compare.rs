@@ -155,6 +155,8 @@ struct Found {
     planes: Vec<Compared>,
     luminance: Option<Compared>,
     delta_e: Option<DeltaE>,
+    /// How a map shows it, with the white of CIELAB.
+    show: Option<Show>,
 }
 
 fn failed(error: crate::image::Error) -> Failure {
@@ -217,22 +219,22 @@ fn found(arguments: &CompareArgs, a: &mut Seen, b: &mut Seen, findings: &mut Vec
             }
         }
     }
-    let mut delta_e = None;
+    let (mut delta_e, mut show) = (None, None);
     if let (Some(of_luminance), (Some(of_a), Some(of_b))) = (&luminance, &xyz)
         && let Some(y) = arguments.lab_white.or_else(|| Some(of_luminance.difference.peak).filter(|p| *p > 0.0))
         && let Some(white) = xyz_of_xy(SRGB.white)
     {
-        let show = Show::DeltaE { white: white.map(|v| v * y) };
-        let mut map = Map::new(of_a.of(&mut a.source), of_b.of(&mut b.source), show);
+        let colours = Show::DeltaE { white: white.map(|v| v * y) };
+        let mut map = Map::new(of_a.of(&mut a.source), of_b.of(&mut b.source), colours);
         let summary = summary(&mut map, &PERCENTILES.map(|p| p / 100.0)).map_err(failed)?;
-        delta_e = Some(DeltaE { white: (y, SRGB.white), summary });
+        (delta_e, show) = (Some(DeltaE { white: (y, SRGB.white), summary }), Some(colours));
     }
     let left_out = planes.iter().chain(&luminance).map(|p| p.difference.left_out).max().unwrap_or(0);
     if left_out > 0 {
         let message = format!("{left_out} pixels with samples that are NaN or infinite in either image were left out");
         findings.push(Finding::warning("I050", message));
     }
-    Ok(Found { planes, luminance, delta_e })
+    Ok(Found { planes, luminance, delta_e, show })
 }
 
 fn write_map(
@@ -247,11 +249,8 @@ fn write_map(
     let missing = |what: &str| {
         Failure::Message(format!("{}: the images have no {what} in common to draw a map of", path.display()))
     };
-    let (left, right, show) = match (arguments.map_of, &found.delta_e) {
-        (MapOf::DeltaE, Some(colour)) => {
-            let white = xyz_of_xy(colour.white.1).map(|w| w.map(|v| v * colour.white.0));
-            (a.xyz.clone(), b.xyz.clone(), Show::DeltaE { white: white.unwrap_or([1.0; 3]) })
-        }
+    let (left, right, show) = match (arguments.map_of, found.show) {
+        (MapOf::DeltaE, Some(show)) => (a.xyz.clone(), b.xyz.clone(), show),
         (MapOf::DeltaE, None) => return Err(missing("colour")),
         (MapOf::Relative, _) if found.luminance.is_none() => return Err(missing("luminance")),
         (MapOf::Relative, _) => (a.luminance.clone(), b.luminance.clone(), Show::Relative),

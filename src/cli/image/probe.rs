@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use serde_json::json;
 
 use super::convert::MeaningArgs;
@@ -36,7 +36,7 @@ pub(in crate::cli) struct ProbeArgs {
     #[arg(required = true, value_name = "IMAGE")]
     images: Vec<String>,
     #[command(flatten)]
-    parts: Parts,
+    parts: Ordered,
     /// Percentiles of the luminance, 0 to 100; exact, between two pixels in proportion.
     #[arg(long, value_name = "PERCENT,…", value_delimiter = ',', default_value = "5,50,95", value_parser = percent)]
     percentiles: Vec<f64>,
@@ -84,6 +84,47 @@ struct Parts {
     /// Its lens.
     #[arg(long, value_enum, default_value = "pinhole")]
     projection: ProjectionArg,
+}
+
+/// Arguments of the parts, which name the kinds in the order that [`Parts::list`] makes them.
+const KINDS: [&str; 6] = ["pixel", "rect", "polygon", "circle", "spot", "line"];
+
+/// The parts, and where on the command line each of them stands, kind by kind.
+#[derive(Debug)]
+struct Ordered {
+    parts: Parts,
+    places: Vec<usize>,
+}
+
+impl FromArgMatches for Ordered {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let places = KINDS.iter().filter_map(|kind| matches.indices_of(kind)).flatten().collect();
+        Ok(Self { parts: Parts::from_arg_matches(matches)?, places })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Ordered {
+    fn augment_args(command: Command) -> Command {
+        Parts::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Parts::augment_args_for_update(command)
+    }
+}
+
+impl Ordered {
+    /// What is looked at, as asked for from left to right.
+    fn list(&self, image: &Description) -> Result<Vec<(String, Where)>, Failure> {
+        let mut placed: Vec<_> = self.places.iter().zip(self.parts.list(image)?).collect();
+        placed.sort_by_key(|(place, _)| **place);
+        Ok(placed.into_iter().map(|(_, part)| part).collect())
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -160,6 +201,7 @@ enum Where {
 }
 
 impl Parts {
+    /// Kind by kind, as in [`KINDS`].
     fn list(&self, image: &Description) -> Result<Vec<(String, Where)>, Failure> {
         let mut out = Vec::new();
         for p in &self.pixel {
@@ -254,9 +296,9 @@ pub(super) fn run(arguments: &ProbeArgs, talk: Talk) -> Result<(), Failure> {
     let mut described = settings_json(&arguments.meaning, &settings);
     described["coverage"] = "pixels whose centres lie in the shape".into();
     described["percentiles"] = json!(arguments.percentiles);
-    if let Some(fov) = arguments.parts.fov {
+    if let Some(fov) = arguments.parts.parts.fov {
         described["fov_deg"] = fov.into();
-        let name = arguments.parts.projection.to_possible_value().map(|v| v.get_name().to_owned());
+        let name = arguments.parts.parts.projection.to_possible_value().map(|v| v.get_name().to_owned());
         described["projection"] = name.into();
     }
     let mut envelope = Envelope::begin(Vec::new(), "image probe", &described)?;

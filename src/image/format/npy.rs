@@ -1,15 +1,17 @@
 //! NPY, NumPy's format for one array ("NEP 1", versions 1.0 to 3.0), by hand.
 //!
-//! An image is an array of shape (rows, columns, channels), or (rows, columns) for one channel, in C order; its elements are any
-//! of the types that ENVI knows, in either byte order. An array says nothing of wavelengths, units or quantities: the caller
-//! does. Written are little-endian 32-bit floats.
+//! An image is an array of shape (rows, columns, channels), or (rows, columns) for one channel; its elements are any of the types
+//! that ENVI knows, in either byte order. In C order the channels of a pixel lie beside one another; in Fortran order the rows of
+//! a column do, and reading a few rows at a time takes many short pieces of the file. An array says nothing of wavelengths, units
+//! or quantities: the caller does. Written are little-endian 32-bit floats in C order.
 
 use std::io::{Read, Seek, SeekFrom, Write};
 
 use super::envi::{ByteOrder, DataType, Envi, Header, Interleave, Options, WriteOptions, open_numbers, write_numbers};
 use crate::finding::{Checked, Finding};
+use crate::image::description::Description;
 use crate::image::error::{Error, ErrorKind};
-use crate::image::source::Source;
+use crate::image::source::{self, Region, Source};
 
 /// The first bytes of every file.
 pub const MAGIC: &[u8; 6] = b"\x93NUMPY";
@@ -17,6 +19,16 @@ pub const MAGIC: &[u8; 6] = b"\x93NUMPY";
 const LONGEST_HEADER: usize = 1 << 16;
 /// Bytes before the first number come in multiples of this.
 const ALIGNMENT: usize = 64;
+
+/// An array being read.
+pub struct Npy<R> {
+    /// The numbers; of an array in Fortran order as an image whose rows are the columns.
+    numbers: Envi<R>,
+    description: Description,
+    fortran: bool,
+    /// What was read of `numbers`; kept between reads.
+    columns: Vec<f32>,
+}
 
 /// Opens an array. `wavelengths_nm` has one entry per channel, or none where the channels are no bands.
 ///
@@ -26,8 +38,8 @@ pub fn open<R: Read + Seek + Send>(
     mut input: R,
     wavelengths_nm: Vec<f64>,
     options: Options,
-) -> Result<Checked<Envi<R>>, Error> {
-    let mut header = header(&mut input)?;
+) -> Result<Checked<Npy<R>>, Error> {
+    let (mut header, fortran) = header(&mut input)?;
     let bands = header.bands;
     if !wavelengths_nm.is_empty() && wavelengths_nm.len() != bands {
         let expected = format!("{bands}, one for each channel of the array");
@@ -36,7 +48,41 @@ pub fn open<R: Read + Seek + Send>(
     }
     header.wavelengths = wavelengths_nm;
     header.wavelength_unit = Some(crate::spectrum::WavelengthUnit::Nanometre);
-    open_numbers(header, input, options)
+    let Checked { value: numbers, findings } = open_numbers(header, input, options)?;
+    let mut description = numbers.description().clone();
+    if fortran {
+        (description.width, description.height) = (description.height, description.width);
+    }
+    Ok(Checked { value: Npy { numbers, description, fortran, columns: Vec::new() }, findings })
+}
+
+impl<R: Read + Seek + Send> Source for Npy<R> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), Error> {
+        if !self.fortran {
+            return self.numbers.read(region, channels, out);
+        }
+        source::check(&self.description, region, channels, out);
+        let Region { width, height, .. } = region;
+        self.columns.resize(out.len(), 0.0);
+        let turned = Region { x: region.y, y: region.x, width: height, height: width };
+        self.numbers.read(turned, channels, &mut self.columns)?;
+        let count = channels.len();
+        for (i, out) in out.chunks_exact_mut(width.max(1)).enumerate() {
+            let (y, k) = (i / count, i % count);
+            for (x, out) in out.iter_mut().enumerate() {
+                *out = self.columns[(x * count + k) * height + y];
+            }
+        }
+        Ok(())
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        self.numbers.findings()
+    }
 }
 
 /// The number of channels of an array.
@@ -44,17 +90,21 @@ pub fn open<R: Read + Seek + Send>(
 /// # Errors
 /// As [`open`].
 pub fn channels(input: &mut (impl Read + Seek)) -> Result<usize, Error> {
-    header(input).map(|h| h.bands)
+    header(input).map(|(header, _)| header.bands)
 }
 
-/// What the header says, as one of ENVI's.
-fn header(input: &mut (impl Read + Seek)) -> Result<Header, Error> {
+/// What the header says, as one of ENVI's, and whether the order is Fortran's.
+fn header(input: &mut (impl Read + Seek)) -> Result<(Header, bool), Error> {
     let (text, offset) = header_text(input)?;
     let (data_type, byte_order) = element(field(&text, "descr")?)?;
-    if field(&text, "fortran_order")? != "False" {
-        let found = "an array in Fortran order".to_owned();
-        return Err(ErrorKind::Unsupported { found, expected: "C order (numpy.ascontiguousarray)".to_owned() }.into());
-    }
+    let fortran = match field(&text, "fortran_order")? {
+        "False" => false,
+        "True" => true,
+        other => {
+            let (field, expected) = ("`fortran_order`".to_owned(), "True or False".to_owned());
+            return Err(ErrorKind::Value { found: other.to_owned(), field, expected }.into());
+        }
+    };
     let shape = field(&text, "shape")?;
     let sizes: Option<Vec<usize>> = shape
         .trim_matches(['(', ')'])
@@ -71,27 +121,32 @@ fn header(input: &mut (impl Read + Seek)) -> Result<Header, Error> {
             return Err(ErrorKind::Value { found: shape.to_owned(), field: "`shape`".to_owned(), expected }.into());
         }
     };
-    let mut header = Header::new(samples, lines, bands, data_type);
-    (header.interleave, header.byte_order, header.offset) = (Interleave::Bip, byte_order, offset);
-    Ok(header)
+    let mut header = if fortran {
+        Header::new(lines, samples, bands, data_type)
+    } else {
+        Header::new(samples, lines, bands, data_type)
+    };
+    header.interleave = if fortran { Interleave::Bsq } else { Interleave::Bip };
+    (header.byte_order, header.offset) = (byte_order, offset);
+    Ok((header, fortran))
 }
 
 /// The dictionary, and where the numbers begin.
 fn header_text(input: &mut (impl Read + Seek)) -> Result<(String, u64), Error> {
     input.seek(SeekFrom::Start(0))?;
     let mut start = [0; 8];
-    input.read_exact(&mut start)?;
+    fill(input, &mut start)?;
     if !start.starts_with(MAGIC) {
         let expected = "an NPY file".to_owned();
         return Err(ErrorKind::Unexpected { found: "other first bytes".to_owned(), expected }.into());
     }
     let (length, before) = if start[6] == 1 {
         let mut length = [0; 2];
-        input.read_exact(&mut length)?;
+        fill(input, &mut length)?;
         (usize::from(u16::from_le_bytes(length)), 10)
     } else {
         let mut length = [0; 4];
-        input.read_exact(&mut length)?;
+        fill(input, &mut length)?;
         (u32::from_le_bytes(length) as usize, 12)
     };
     if length > LONGEST_HEADER {
@@ -100,8 +155,19 @@ fn header_text(input: &mut (impl Read + Seek)) -> Result<(String, u64), Error> {
         return Err(ErrorKind::Value { found: length.to_string(), field, expected }.into());
     }
     let mut text = vec![0; length];
-    input.read_exact(&mut text)?;
+    fill(input, &mut text)?;
     Ok((String::from_utf8_lossy(&text).into_owned(), (before + length) as u64))
+}
+
+/// Reads as many bytes as `out` has, of a header.
+fn fill(input: &mut impl Read, out: &mut [u8]) -> Result<(), Error> {
+    input.read_exact(out).map_err(|error| match error.kind() {
+        std::io::ErrorKind::UnexpectedEof => {
+            let (found, expected) = ("the end of the file in its header", "a whole NPY file");
+            ErrorKind::Unexpected { found: found.to_owned(), expected: expected.to_owned() }.into()
+        }
+        _ => error.into(),
+    })
 }
 
 /// The value of a key in the dictionary literal.

@@ -33,6 +33,8 @@ pub mod superellipse;
 
 use glam::DVec3;
 
+pub mod area;
+
 use super::ray::{Ray, Towards};
 
 /// A light without a surface. All slices have one element per band.

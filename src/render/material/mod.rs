@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+pub mod opaque;
+
 /// A direction drawn by [`Material::sample`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scattered {
@@ -32,13 +34,15 @@ pub trait Material: std::fmt::Debug + Send + Sync {
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, transport: Transport, values: &mut [f64]);
 
     /// Draws ω_i for a given ω_o from three uniform numbers and writes f_s |cosθ_i| / pdf per band (Dirac lobe: share / probability).
-    /// `band`: the band that a path which already carries only one is left with.
+    ///
+    /// Where the direction depends on the wavelength, it is that of the band `hero`, the other bands get weight 0, and the draw is
+    /// marked `split`; the caller, who chose the hero, divides by the probability of that choice.
     fn sample(
         &self,
         outgoing: DVec3,
         u: [f64; 3],
         transport: Transport,
-        band: Option<usize>,
+        hero: usize,
         weights: &mut [f64],
     ) -> Option<Scattered>;
 

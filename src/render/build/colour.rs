@@ -1,0 +1,175 @@
+//! The scene's spectra as functions of wavelength, and the products of them that light can become.
+
+use std::ops::Range;
+
+use super::Builder;
+use crate::constants::SecondRadiation;
+use crate::illuminant::named;
+use crate::render::bands::{Bands, RANGE_NM, Width, as_function};
+use crate::render::description::Error;
+use crate::render::description::spectrum::SpectrumSource;
+use crate::spectrum::integrate::Weighting;
+use crate::spectrum::{Sampling, Spectrum};
+
+/// What a spectrum is beyond its table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Edge {
+    /// Zero: of an emission.
+    Dark,
+    /// As at its end: of a reflectance.
+    Constant,
+}
+
+/// A spectrum of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Colour {
+    Constant(f64),
+    Table(Weighting, Edge),
+    Lines(Spectrum),
+}
+
+impl Colour {
+    /// Looks a spectrum up: by value, by name in the scene or among the known sources, or in a file.
+    pub(super) fn of(b: &Builder<'_>, source: &SpectrumSource, edge: Edge, at: &Range<usize>) -> Result<Self, Error> {
+        let spectrum = match source {
+            SpectrumSource::Constant(value) => return Ok(Self::Constant(*value)),
+            SpectrumSource::Table(table) => {
+                let (nm, values): (Vec<f64>, Vec<f64>) = table.iter().map(|[nm, v]| (*nm, *v)).unzip();
+                return Ok(Self::Table(Weighting::table(nm, values), edge));
+            }
+            SpectrumSource::Named(name) => match b.description.spectra.get(name) {
+                Some(SpectrumSource::Named(other)) if b.description.spectra.contains_key(other) => {
+                    let message = format!("`{name}` is another name for `{other}`; expected the spectrum itself");
+                    return Err(b.wrong(at, message));
+                }
+                Some(found) => return Self::of(b, found, edge, at),
+                None => named::source(name, SecondRadiation::default()).map(|s| s.spectrum).map_err(|e| {
+                    let own: Vec<&str> = b.description.spectra.keys().map(String::as_str).collect();
+                    let own = if own.is_empty() { "none".to_owned() } else { own.join(", ") };
+                    b.wrong(at, format!("no spectrum is called `{name}` (the scene has: {own}); {e}"))
+                })?,
+            },
+            SpectrumSource::File(file) => b.files.spectrum(file).map_err(|e| b.wrong(at, e))?,
+        };
+        Ok(match spectrum.sampling() {
+            Sampling::Density => Self::Table(as_function(&spectrum), edge),
+            Sampling::Lines => Self::Lines(spectrum),
+        })
+    }
+
+    /// The value at a wavelength; lines have none.
+    pub(super) fn at(&self, nm: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Table(table, Edge::Dark) => table.at(nm),
+            Self::Table(table, Edge::Constant) => {
+                let (low, high) = table.range_nm();
+                table.at(nm.clamp(low, high))
+            }
+            Self::Lines(_) => 0.0,
+        }
+    }
+
+    /// The values in the bands; `Err` with the wavelength of a line that no band has.
+    pub(super) fn values(&self, bands: &Bands) -> Result<Vec<f64>, f64> {
+        match self {
+            Self::Lines(spectrum) => bands.emission(spectrum),
+            // A density has no power in a line; a reflectance has a value there.
+            Self::Table(_, Edge::Dark) => Ok((bands.wavelengths_nm().iter().zip(bands.widths()))
+                .map(|(&nm, width)| if matches!(width, Width::Line) { 0.0 } else { self.at(nm) })
+                .collect()),
+            _ => Ok(bands.wavelengths_nm().iter().map(|&nm| self.at(nm)).collect()),
+        }
+    }
+
+    /// ∫ over the whole spectrum: over its own table, over the range that is carried for a constant, the sum for lines.
+    pub(super) fn total(&self) -> f64 {
+        match self {
+            Self::Constant(value) => value * (RANGE_NM.1 - RANGE_NM.0),
+            Self::Table(table, _) => (table.wavelengths_nm().windows(2).zip(table.values().windows(2)))
+                .map(|(nm, v)| 0.5 * (nm[1] - nm[0]) * (v[0] + v[1]))
+                .sum(),
+            Self::Lines(spectrum) => spectrum.values().iter().sum(),
+        }
+    }
+}
+
+/// All spectra of a scene that decide which wavelengths it needs.
+#[derive(Debug)]
+pub(super) struct Colours {
+    emissions: Vec<Colour>,
+    reflectances: Vec<Colour>,
+}
+
+/// More different reflectances than this are taken one at a time.
+const PAIRED: usize = 12;
+
+impl Colours {
+    pub(super) fn new(b: &Builder<'_>) -> Result<Self, Error> {
+        let d = b.description;
+        let mut emissions = Vec::new();
+        for light in &d.light {
+            let at = super::light::span(light);
+            emissions.push(
+                light.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?,
+            );
+        }
+        for emission in d.shape.iter().filter_map(|s| s.emission.as_ref()) {
+            let source = &emission.get_ref().spectrum;
+            let at = emission.span();
+            emissions.push(source.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?);
+        }
+        let mut reflectances = Vec::new();
+        for material in &d.material {
+            if let Some(source) = &material.reflectance {
+                reflectances.push(Colour::of(b, source.get_ref(), Edge::Constant, &source.span())?);
+            } else if let Some(brdf) = &material.brdf {
+                reflectances.push(super::surface::colour_of(b, brdf)?);
+            }
+        }
+        let unique = |mut list: Vec<Colour>| {
+            let mut out: Vec<Colour> = Vec::new();
+            list.retain(|c| {
+                !out.contains(c) && {
+                    out.push(c.clone());
+                    true
+                }
+            });
+            out
+        };
+        Ok(Self { emissions: unique(emissions), reflectances: unique(reflectances) })
+    }
+
+    /// Whether anything emits a density.
+    pub(super) fn has_densities(&self) -> bool {
+        self.emissions.is_empty() || self.emissions.iter().any(|c| !matches!(c, Colour::Lines(_)))
+    }
+
+    /// The wavelengths of all lines, ascending, nm.
+    pub(super) fn lines(&self) -> Vec<f64> {
+        let mut all: Vec<f64> = (self.emissions.iter())
+            .filter_map(|c| if let Colour::Lines(s) = c { Some(s.wavelengths_nm().to_vec()) } else { None })
+            .flatten()
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
+    /// Every emission by itself, reflected once by every material, and twice by every pair of them.
+    pub(super) fn products(&self) -> Vec<Box<dyn Fn(f64) -> f64 + '_>> {
+        let mut out: Vec<Box<dyn Fn(f64) -> f64 + '_>> = Vec::new();
+        for e in self.emissions.iter().filter(|c| !matches!(c, Colour::Lines(_))) {
+            out.push(Box::new(|nm| e.at(nm)));
+            for (i, r) in self.reflectances.iter().enumerate() {
+                out.push(Box::new(|nm| e.at(nm) * r.at(nm)));
+                let others =
+                    if self.reflectances.len() <= PAIRED { &self.reflectances[i..] } else { &self.reflectances[i..=i] };
+                for s in others {
+                    out.push(Box::new(|nm| e.at(nm) * r.at(nm) * s.at(nm)));
+                }
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,228 @@
+//! Instruments, and the quantities that they read.
+
+use glam::{DVec2, DVec3};
+
+use super::Builder;
+use crate::colorimetry::observer::Observer;
+use crate::constants::K_M;
+use crate::geometry::lens::Distortion;
+use crate::render::bands::{Bands, Width};
+use crate::render::description::Error;
+use crate::render::description::sensor::{Camera as DescribedCamera, Illuminance, Projection as Layout, Sensor};
+use crate::render::measure::{Meter, Place};
+use crate::render::ray::SurfacePoint;
+use crate::render::scene::Scene;
+use crate::render::sensor::camera::{Camera, Projection};
+use crate::render::sensor::response::Response;
+
+/// What each band adds to the quantities that are read, per unit of the band's value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantities {
+    /// K_m V(λ) Δλ, lm/W times nm.
+    pub luminous: Vec<f64>,
+    /// Δλ, nm.
+    pub radiant: Vec<f64>,
+    /// K_m times the colour matching functions of the CIE 1931 observer.
+    pub tristimulus: Vec<[f64; 3]>,
+}
+
+impl Quantities {
+    pub(super) fn new(bands: &Bands) -> Self {
+        let radiant = (bands.widths().iter())
+            .map(|w| match *w {
+                Width::Density { nm } => nm,
+                Width::Line => 1.0,
+            })
+            .collect();
+        let [x, y, z] = Observer::Cie1931.colour_matching_functions().map(|w| bands.weights(&w));
+        let tristimulus = (0..bands.len()).map(|b| [K_M * x[b], K_M * y[b], K_M * z[b]]).collect();
+        Self { luminous: super::luminous_weights(bands), radiant, tristimulus }
+    }
+}
+
+/// An instrument of a scene.
+#[derive(Debug)]
+pub struct Instrument {
+    /// Its name.
+    pub name: String,
+    /// Its spectrum is to be reported.
+    pub spectrum: bool,
+    /// The relative standard error to reach.
+    pub target: Option<f64>,
+    /// What it is.
+    pub kind: Kind,
+}
+
+/// What an instrument is.
+#[derive(Debug)]
+pub enum Kind {
+    /// A meter at one place.
+    Meter(Meter),
+    /// Meters on a grid, row by row along its first edge.
+    Grid {
+        /// The meters.
+        meters: Vec<Meter>,
+        /// Points along the first and the second edge.
+        counts: [usize; 2],
+        /// Lengths of the edges, m.
+        size_m: [f64; 2],
+    },
+    /// A camera.
+    Camera(Camera),
+}
+
+/// Angle across the cone of a spot meter that states none, degrees.
+const ACCEPTANCE_DEG: f64 = 1.0;
+/// Angle across the width of a perspective picture, across the circle of a fisheye, that states none, degrees.
+const FIELD_DEG: f64 = 60.0;
+const FISHEYE_DEG: f64 = 180.0;
+/// Most points of a grid.
+const MOST_POINTS: u64 = 10_000_000;
+
+impl Builder<'_> {
+    pub(super) fn instruments(&self, scene: &Scene) -> Result<Vec<Instrument>, Error> {
+        if self.description.sensor.is_empty() {
+            return Err(self.wrong(&(0..0), "no sensor; expected at least one [[sensor]]"));
+        }
+        self.description.sensor.iter().map(|s| self.instrument(s, scene)).collect()
+    }
+
+    fn instrument(&self, sensor: &Sensor, scene: &Scene) -> Result<Instrument, Error> {
+        let mut kinds = Vec::new();
+        let meter = |at: [f64; 3], axis: DVec3, response| {
+            let at = DVec3::from_array(at);
+            Kind::Meter(Meter { place: point(at, axis, scene), response })
+        };
+        let upright =
+            |axis: Option<[f64; 3]>, span: &std::ops::Range<usize>| self.unit(axis.unwrap_or([0.0, 0.0, 1.0]), span);
+        if let Some(i) = &sensor.illuminance {
+            kinds.push(self.illuminance(i.get_ref(), &i.span(), scene)?);
+        }
+        if let Some(l) = &sensor.luminance {
+            let m = l.get_ref();
+            let axis = DVec3::from_array(m.look_at) - DVec3::from_array(m.at);
+            let half = 0.5 * m.acceptance.map_or(ACCEPTANCE_DEG.to_radians(), |a| a.0);
+            if !(half > 0.0 && half <= std::f64::consts::FRAC_PI_2) {
+                return Err(self.wrong(&l.span(), "an `acceptance` that is not above 0 and at most 180 deg"));
+            }
+            kinds.push(meter(m.at, self.unit(axis.to_array(), &l.span())?, Response::Cone { sin: half.sin() }));
+        }
+        for (found, response) in [
+            (&sensor.cylindrical, Response::Cylindrical),
+            (&sensor.hemispherical, Response::Hemispherical),
+            (&sensor.spherical, Response::Spherical),
+        ] {
+            if let Some(u) = found {
+                kinds.push(meter(u.get_ref().at, upright(u.get_ref().axis, &u.span())?, response));
+            }
+        }
+        if let Some(c) = &sensor.camera {
+            kinds.push(Kind::Camera(self.camera(c.get_ref(), &c.span())?));
+        }
+        let mut kinds = kinds.into_iter();
+        let (Some(kind), None) = (kinds.next(), kinds.next()) else {
+            let message = format!(
+                "sensor `{}` has not one kind; expected one of illuminance, luminance, cylindrical, hemispherical, spherical, camera",
+                sensor.name.get_ref()
+            );
+            return Err(self.wrong(&sensor.name.span(), message));
+        };
+        if sensor.target.is_some_and(|t| !(t.0 > 0.0)) {
+            return Err(self.wrong(&sensor.name.span(), "a `target` that is not above 0"));
+        }
+        let target = sensor.target.map(|t| t.0);
+        Ok(Instrument { name: sensor.name.get_ref().clone(), spectrum: sensor.spectrum, target, kind })
+    }
+
+    fn illuminance(&self, i: &Illuminance, span: &std::ops::Range<usize>, scene: &Scene) -> Result<Kind, Error> {
+        let response = Response::Planar;
+        match (&i.at, &i.grid, &i.on) {
+            (Some(at), None, None) => {
+                let axis = self.unit(i.normal.unwrap_or([0.0, 0.0, 1.0]), span)?;
+                Ok(Kind::Meter(Meter { place: point(DVec3::from_array(*at), axis, scene), response }))
+            }
+            (None, Some(grid), None) if i.normal.is_none() => {
+                let [u, v] = grid.edges.map(DVec3::from_array);
+                let axis = self.unit(u.cross(v).to_array(), span)?;
+                let [m, n] = grid.points;
+                if m == 0 || n == 0 || u64::from(m) * u64::from(n) > MOST_POINTS {
+                    return Err(
+                        self.wrong(span, format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them"))
+                    );
+                }
+                let corner = DVec3::from_array(grid.corner);
+                let at = |i: u32, j: u32| {
+                    let p = DVec2::new((f64::from(i) + 0.5) / f64::from(m), (f64::from(j) + 0.5) / f64::from(n));
+                    corner + p.x * u + p.y * v
+                };
+                let meters = (0..n)
+                    .flat_map(|j| (0..m).map(move |i| (i, j)))
+                    .map(|(i, j)| Meter { place: point(at(i, j), axis, scene), response })
+                    .collect();
+                Ok(Kind::Grid { meters, counts: [m as usize, n as usize], size_m: [u.length(), v.length()] })
+            }
+            (None, None, Some(on)) if i.normal.is_none() => {
+                let shapes = &self.description.shape;
+                let named = |n: usize| shapes[n].name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref());
+                let number = (0..shapes.len()).find(|n| named(*n)).filter(|n| shapes[*n].cuboid.is_none());
+                let Some(number) = number else {
+                    let message = format!("no shape but a box is called `{}`; expected the name of one", on.get_ref());
+                    return Err(self.wrong(&on.span(), message));
+                };
+                // A box is six surfaces of the scene, every other shape one.
+                let surface: usize = shapes[..number].iter().map(|s| if s.cuboid.is_some() { 6 } else { 1 }).sum();
+                let shape = scene.surfaces().shapes()[surface].clone();
+                if !shape.area().is_finite() {
+                    return Err(self.wrong(&on.span(), "a plane without bounds; expected a shape of finite area"));
+                }
+                Ok(Kind::Meter(Meter { place: Place::Area(shape), response }))
+            }
+            _ => Err(self.wrong(span, "not one place; expected `at` (with an optional `normal`), `grid`, or `on`")),
+        }
+    }
+
+    fn camera(&self, c: &DescribedCamera, span: &std::ops::Range<usize>) -> Result<Camera, Error> {
+        let degrees = |default: f64| c.field_of_view.map_or(default, |a| a.0.to_degrees());
+        let lens = c.aperture_radius.is_some() || c.focus.is_some();
+        let projection = match c.projection {
+            Layout::Perspective if lens => {
+                let (Some(aperture), Some(focus), None) = (c.aperture_radius, c.focus, c.distortion) else {
+                    return Err(
+                        self.wrong(span, "a thin lens needs `aperture_radius` and `focus`, and has no `distortion`")
+                    );
+                };
+                Projection::ThinLens {
+                    field_of_view_deg: degrees(FIELD_DEG),
+                    aperture_radius_m: aperture.0,
+                    focus_m: focus.0,
+                }
+            }
+            Layout::Perspective => {
+                let [k1, k2, p1, p2, k3] = c.distortion.unwrap_or_default();
+                let distortion = Distortion { k1, k2, p1, p2, k3 };
+                Projection::Perspective { field_of_view_deg: degrees(FIELD_DEG), distortion }
+            }
+            Layout::Fisheye => Projection::Fisheye { field_of_view_deg: degrees(FISHEYE_DEG) },
+            Layout::Equirectangular => Projection::Equirectangular,
+        };
+        if c.projection != Layout::Perspective && (lens || c.distortion.is_some()) {
+            return Err(
+                self.wrong(span, "`distortion`, `aperture_radius` and `focus` belong to the perspective projection")
+            );
+        }
+        let up = DVec3::from_array(c.up.unwrap_or([0.0, 0.0, 1.0]));
+        let (at, target) = (DVec3::from_array(c.at), DVec3::from_array(c.look_at));
+        Camera::new(at, target, up, projection, c.resolution).map_err(|e| self.wrong(span, e))
+    }
+
+    fn unit(&self, vector: [f64; 3], span: &std::ops::Range<usize>) -> Result<DVec3, Error> {
+        DVec3::from_array(vector)
+            .try_normalize()
+            .ok_or_else(|| self.wrong(span, format!("the direction {vector:?}; expected a vector of some length")))
+    }
+}
+
+/// A meter's place, off whatever surface it lies on.
+fn point(at: DVec3, axis: DVec3, scene: &Scene) -> Place {
+    Place::Point(SurfacePoint::meter(at, axis, scene.rounding_at(at)))
+}

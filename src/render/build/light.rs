@@ -1,0 +1,193 @@
+//! Lights that are no surfaces.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::colour::{Colour, Edge};
+use super::{Builder, Quantities};
+use crate::luminaire::placement::{Orientation, Placement};
+use crate::luminaire::{Kind as LampKind, Luminaire};
+use crate::render::bands::Bands;
+use crate::render::description::Error;
+use crate::render::description::light::{Lamp, Light as Described};
+use crate::render::description::quantity::Kind;
+use crate::render::light::Light;
+use crate::render::light::bounding::BoundingSphere;
+use crate::render::light::distant::Distant;
+use crate::render::light::goniometric::{Goniometric, per_unit};
+use crate::render::light::point::Point;
+use crate::render::light::spot::{Profile, Spot};
+
+/// The place of a light's kind in the text.
+pub(super) fn span(light: &Described) -> Range<usize> {
+    let kinds = [
+        light.point.as_ref().map(toml::Spanned::span),
+        light.spot.as_ref().map(toml::Spanned::span),
+        light.lamp.as_ref().map(toml::Spanned::span),
+        light.distant.as_ref().map(toml::Spanned::span),
+        light.name.as_ref().map(toml::Spanned::span),
+    ];
+    kinds.into_iter().flatten().next().unwrap_or(0..0)
+}
+
+/// The two quantities that a light may state, one of which it must.
+enum Amount {
+    Flux(f64, Kind),
+    Intensity(f64, Kind),
+}
+
+impl Builder<'_> {
+    pub(super) fn light(
+        &self,
+        light: &Described,
+        number: usize,
+        bands: &Bands,
+        quantities: &Quantities,
+        sphere: BoundingSphere,
+    ) -> Result<Arc<dyn Light>, Error> {
+        let at = span(light);
+        let colour =
+            light.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, &at))?;
+        let kinds = [light.point.is_some(), light.spot.is_some(), light.lamp.is_some(), light.distant.is_some()];
+        if kinds.iter().filter(|k| **k).count() != 1 {
+            let message = format!("light {} has not one kind; expected one of point, spot, lamp, distant", number + 1);
+            return Err(self.wrong(&at, message));
+        }
+        let wrong = |e: crate::render::light::Error| self.wrong(&at, e);
+        if let Some(point) = &light.point {
+            let p = point.get_ref();
+            let position = DVec3::from_array(p.at);
+            return Ok(
+                match self.amount(p.flux.map(|f| (f.value, f.kind)), p.intensity.map(|i| (i.value, i.kind)), &at)? {
+                    Amount::Flux(value, kind) => {
+                        let flux = self.scaled(&colour, value, kind, bands, quantities, &at)?;
+                        Arc::new(Point::from_flux(position, &flux).map_err(wrong)?)
+                    }
+                    Amount::Intensity(value, kind) => {
+                        let intensity = self.scaled(&colour, value, kind, bands, quantities, &at)?;
+                        Arc::new(Point::new(position, &intensity).map_err(wrong)?)
+                    }
+                },
+            );
+        }
+        if let Some(spot) = &light.spot {
+            let s = spot.get_ref();
+            let (position, aim) = (DVec3::from_array(s.at), DVec3::from_array(s.aim));
+            let profile = s.half_angle.map_or(Profile::Cosine, |a| Profile::Cone { half_angle_rad: a.0 });
+            return Ok(
+                match self.amount(s.flux.map(|f| (f.value, f.kind)), s.intensity.map(|i| (i.value, i.kind)), &at)? {
+                    Amount::Flux(value, kind) => {
+                        let flux = self.scaled(&colour, value, kind, bands, quantities, &at)?;
+                        Arc::new(Spot::from_flux(position, aim - position, profile, &flux).map_err(wrong)?)
+                    }
+                    Amount::Intensity(value, kind) => {
+                        let intensity = self.scaled(&colour, value, kind, bands, quantities, &at)?;
+                        Arc::new(Spot::new(position, aim - position, profile, &intensity).map_err(wrong)?)
+                    }
+                },
+            );
+        }
+        if let Some(distant) = &light.distant {
+            let d = distant.get_ref();
+            let irradiance = self.scaled(&colour, d.irradiance.value, d.irradiance.kind, bands, quantities, &at)?;
+            let radius = d.diameter.map_or(0.0, |a| 0.5 * a.0);
+            let light = Distant::new(DVec3::from_array(d.from), radius, &irradiance, sphere).map_err(wrong)?;
+            return Ok(Arc::new(light));
+        }
+        let lamp = light.lamp.as_ref().expect("one of the kinds");
+        self.lamp(lamp.get_ref(), &lamp.span(), &colour, bands, quantities)
+    }
+
+    fn lamp(
+        &self,
+        lamp: &Lamp,
+        at: &Range<usize>,
+        colour: &Colour,
+        bands: &Bands,
+        quantities: &Quantities,
+    ) -> Result<Arc<dyn Light>, Error> {
+        let luminaire: Luminaire = self.files.luminaire(&lamp.file).map_err(|e| self.wrong(at, e))?;
+        let degrees = |a: Option<crate::render::description::quantity::Angle>| a.map_or(0.0, |a| a.0.to_degrees());
+        let orientation = match lamp.aim {
+            Some(aim) => {
+                if lamp.rotation.is_some() || lamp.tilt.is_some() {
+                    return Err(self.wrong(at, "`aim` beside `rotation` or `tilt`; expected one way to turn the lamp"));
+                }
+                Orientation::Aim { at_m: DVec3::from_array(aim), towards_c_deg: 0.0, spin_deg: degrees(lamp.spin) }
+            }
+            None => Orientation::Angles {
+                rotation_deg: degrees(lamp.rotation),
+                tilt_deg: degrees(lamp.tilt),
+                towards_c_deg: 0.0,
+                spin_deg: degrees(lamp.spin),
+            },
+        };
+        let placement =
+            Placement::new(DVec3::from_array(lamp.at), orientation, lamp.dimming).map_err(|e| self.wrong(at, e))?;
+        let weights = match luminaire.kind {
+            LampKind::Luminous => &quantities.luminous,
+            LampKind::Radiant => &quantities.radiant,
+            LampKind::Photon => return Err(self.wrong(at, "a lamp file of photon intensities; expected cd or W/sr")),
+        };
+        let values = colour.values(bands).map_err(|nm| self.wrong(at, format!("a line at {nm} nm without a band")))?;
+        let unit = per_unit(&values, weights).map_err(|e| self.wrong(at, e))?;
+        let table = match lamp.flux {
+            None => luminaire.distribution,
+            Some(flux) => {
+                let file = luminaire.distribution.total_flux();
+                let same = matches!(
+                    (flux.kind, luminaire.kind),
+                    (Kind::Luminous, LampKind::Luminous) | (Kind::Radiant, LampKind::Radiant)
+                );
+                if !(same && file > 0.0) {
+                    return Err(self.wrong(at, "a `flux` that the lamp file cannot be scaled to; expected lm for a file in cd, W for one in W/sr, and a file with light"));
+                }
+                luminaire.distribution.scaled(flux.value / file)
+            }
+        };
+        Ok(Arc::new(Goniometric::new(table, &placement, &unit).map_err(|e| self.wrong(at, e))?))
+    }
+
+    /// Either of two quantities.
+    fn amount(
+        &self,
+        flux: Option<(f64, Kind)>,
+        intensity: Option<(f64, Kind)>,
+        at: &Range<usize>,
+    ) -> Result<Amount, Error> {
+        match (flux, intensity) {
+            (Some((value, kind)), None) => Ok(Amount::Flux(value, kind)),
+            (None, Some((value, kind))) => Ok(Amount::Intensity(value, kind)),
+            _ => Err(self.wrong(at, "both or neither of `flux` and `intensity`; expected one of them")),
+        }
+    }
+
+    /// The values of a spectrum in the bands, scaled to an amount: in the luminous sense so that the bands' own sum gives it, in the
+    /// radiant sense so that the whole spectrum does.
+    pub(super) fn scaled(
+        &self,
+        colour: &Colour,
+        amount: f64,
+        kind: Kind,
+        bands: &Bands,
+        quantities: &Quantities,
+        at: &Range<usize>,
+    ) -> Result<Vec<f64>, Error> {
+        let mut values =
+            colour.values(bands).map_err(|nm| self.wrong(at, format!("a line at {nm} nm without a band")))?;
+        let content = match kind {
+            Kind::Luminous => values.iter().zip(&quantities.luminous).map(|(v, w)| v * w).sum(),
+            Kind::Radiant => colour.total(),
+            Kind::Spectral => 1.0,
+        };
+        let factor = amount / content;
+        if !factor.is_finite() {
+            return Err(self
+                .wrong(at, "a spectrum without any of the quantity that it is to be scaled to; expected light in it"));
+        }
+        values.iter_mut().for_each(|v| *v *= factor);
+        Ok(values)
+    }
+}

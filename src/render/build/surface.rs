@@ -1,0 +1,243 @@
+//! Materials, shapes and what they emit.
+
+use std::ops::Range;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use glam::DVec3;
+use toml::Spanned;
+
+use super::colour::{Colour, Edge};
+use super::{Builder, Quantities};
+use crate::brdf::description::{Bands as BrdfBands, Material as Model};
+use crate::brdf::lambert::Lambert;
+use crate::geometry::direction;
+use crate::render::bands::{Bands, RANGE_NM};
+use crate::render::description::Error;
+use crate::render::description::surface::{Emission as Emitted, Shape as Described};
+use crate::render::emission::Emission;
+use crate::render::material::Material;
+use crate::render::material::opaque::Opaque;
+use crate::render::scene::Part;
+use crate::render::shape::Shape;
+use crate::render::shape::cylinder::Cylinder;
+use crate::render::shape::disk::Disk;
+use crate::render::shape::error::ShapeError;
+use crate::render::shape::plane::Plane;
+use crate::render::shape::polygon::Polygon;
+use crate::render::shape::rectangle::Rectangle;
+use crate::render::shape::sphere::Sphere;
+use crate::spectrum::integrate::Weighting;
+
+/// A material by name.
+pub(super) type Named = (String, Arc<dyn Material>);
+
+/// The name of a shape in reports.
+pub(super) fn name(shape: &Described, number: usize) -> String {
+    shape.name.as_ref().map_or_else(|| format!("shape {}", number + 1), |n| n.get_ref().clone())
+}
+
+/// A model's place in the scene's text, for errors within a description on one line.
+fn place(b: &Builder<'_>, text: &Spanned<String>, e: &crate::brdf::description::Error) -> Error {
+    let mut out = b.wrong(&text.span(), &e.kind);
+    if e.place.line == 1 {
+        out.column += e.place.column;
+    }
+    out
+}
+
+/// How a described material depends on wavelength, as far as the choice of wavelengths goes: its values for two pairs of directions, one
+/// near the mirror direction and one off it, at 1 nm.
+pub(super) fn colour_of(b: &Builder<'_>, text: &Spanned<String>) -> Result<Colour, Error> {
+    let model = Model::from_str(text.get_ref()).map_err(|e| place(b, text, &e))?;
+    let bands = Bands::uniform(RANGE_NM.0, 1.0);
+    let brdf = model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm())).map_err(|e| place(b, text, &e))?;
+    let mut sum = vec![0.0; bands.len()];
+    let mut values = sum.clone();
+    for (incident, outgoing) in [(0.2, 0.2), (1.0, 0.3)] {
+        let (i, o) = (direction::from_angles(incident, 0.0), direction::from_angles(outgoing, std::f64::consts::PI));
+        brdf.evaluate(i, o, &mut values);
+        let scale = values.iter().copied().fold(0.0, f64::max);
+        if scale > 0.0 {
+            sum.iter_mut().zip(&values).for_each(|(s, v)| *s += v / scale);
+        }
+    }
+    brdf.specular(direction::from_angles(0.2, 0.0), &mut values);
+    sum.iter_mut().zip(&values).for_each(|(s, v)| *s += v);
+    Ok(Colour::Table(Weighting::table(bands.wavelengths_nm().to_vec(), sum), Edge::Constant))
+}
+
+impl Builder<'_> {
+    pub(super) fn materials(&self, bands: &Bands) -> Result<Vec<Named>, Error> {
+        let build = |m: &crate::render::description::Material| {
+            let name = m.name.get_ref().clone();
+            let material: Arc<dyn Material> = match (&m.reflectance, &m.brdf) {
+                (Some(source), None) => {
+                    let values = self.values(source.get_ref(), bands, Edge::Constant, &source.span())?;
+                    let lambert = Lambert::new(values).map_err(|e| self.wrong(&source.span(), e))?;
+                    Arc::new(Opaque::new(Box::new(lambert), !m.one_sided))
+                }
+                (None, Some(text)) => {
+                    let model = Model::from_str(text.get_ref()).map_err(|e| place(self, text, &e))?;
+                    let brdf = model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm()));
+                    Arc::new(Opaque::new(brdf.map_err(|e| place(self, text, &e))?, !m.one_sided))
+                }
+                _ => {
+                    let message = format!("material `{name}` has not one kind; expected one of reflectance, brdf");
+                    return Err(self.wrong(&m.name.span(), message));
+                }
+            };
+            Ok((name, material))
+        };
+        self.description.material.iter().map(build).collect()
+    }
+
+    pub(super) fn parts(
+        &self,
+        materials: &[Named],
+        bands: &Bands,
+        quantities: &Quantities,
+    ) -> Result<Vec<Part>, Error> {
+        let black = Lambert::new(vec![0.0; bands.len()]).expect("a reflectance of 0");
+        let black: Arc<dyn Material> = Arc::new(Opaque::new(Box::new(black), true));
+        let mut parts = Vec::new();
+        for (number, shape) in self.description.shape.iter().enumerate() {
+            let material = match &shape.material {
+                None => Arc::clone(&black),
+                Some(wanted) => {
+                    let found = materials.iter().find(|(name, _)| name == wanted.get_ref());
+                    let (_, material) = found.ok_or_else(|| {
+                        let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
+                        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+                        self.wrong(
+                            &wanted.span(),
+                            format!("no material is called `{}`; expected one of: {known}", wanted.get_ref()),
+                        )
+                    })?;
+                    Arc::clone(material)
+                }
+            };
+            let faces = self.faces(shape, number)?;
+            let area = faces.iter().map(|f| f.area()).sum();
+            let emission = match &shape.emission {
+                None => None,
+                Some(e) => Some(Arc::new(self.emission(e.get_ref(), &e.span(), area, bands, quantities)?)),
+            };
+            parts.extend(faces.into_iter().map(|shape| Part {
+                shape,
+                material: Arc::clone(&material),
+                emission: emission.clone(),
+            }));
+        }
+        Ok(parts)
+    }
+
+    /// The surfaces of a described shape.
+    fn faces(&self, shape: &Described, number: usize) -> Result<Vec<Arc<dyn Shape>>, Error> {
+        let v = DVec3::from_array;
+        let mut out: Vec<(Range<usize>, Result<Vec<Arc<dyn Shape>>, ShapeError>)> = Vec::new();
+        fn one<S: Shape + 'static>(shape: Result<S, ShapeError>) -> Result<Vec<Arc<dyn Shape>>, ShapeError> {
+            shape.map(|s| vec![Arc::new(s) as Arc<dyn Shape>])
+        }
+        if let Some(s) = &shape.sphere {
+            out.push((s.span(), one(Sphere::new(v(s.get_ref().centre), s.get_ref().radius.0))));
+        }
+        if let Some(s) = &shape.plane {
+            out.push((s.span(), one(Plane::new(v(s.get_ref().point), v(s.get_ref().normal)))));
+        }
+        if let Some(s) = &shape.disk {
+            let d = s.get_ref();
+            let disk = match d.inner_radius {
+                None => Disk::new(v(d.centre), v(d.normal), d.radius.0),
+                Some(inner) => Disk::annulus(v(d.centre), v(d.normal), d.radius.0, inner.0),
+            };
+            out.push((s.span(), one(disk)));
+        }
+        if let Some(s) = &shape.rectangle {
+            let [a, b] = s.get_ref().edges;
+            out.push((s.span(), one(Rectangle::new(v(s.get_ref().corner), v(a), v(b)))));
+        }
+        if let Some(s) = &shape.polygon {
+            out.push((s.span(), one(Polygon::new(s.get_ref().corners.iter().copied().map(v).collect()))));
+        }
+        if let Some(s) = &shape.cuboid {
+            let c = s.get_ref();
+            out.push((s.span(), cuboid(v(c.from), v(c.to), c.inwards)));
+        }
+        if let Some(s) = &shape.cylinder {
+            let c = s.get_ref();
+            out.push((s.span(), one(Cylinder::new(v(c.from), v(c.to), c.radius.0, c.closed))));
+        }
+        let mut kinds = out.into_iter();
+        match (kinds.next(), kinds.next()) {
+            (Some((span, faces)), None) => faces.map_err(|e| self.wrong(&span, e)),
+            (first, _) => {
+                let at = first.map(|f| f.0).or_else(|| shape.name.as_ref().map(Spanned::span)).unwrap_or(0..0);
+                let message = format!(
+                    "{} has not one kind; expected one of sphere, plane, disk, rectangle, polygon, box, cylinder",
+                    name(shape, number)
+                );
+                Err(self.wrong(&at, message))
+            }
+        }
+    }
+
+    fn emission(
+        &self,
+        e: &Emitted,
+        at: &Range<usize>,
+        area: f64,
+        bands: &Bands,
+        quantities: &Quantities,
+    ) -> Result<Emission, Error> {
+        if !(e.cosine_power >= 0.0 && e.cosine_power.is_finite()) {
+            return Err(self.wrong(at, format!("a `cosine_power` of {}; expected 0 or more", e.cosine_power)));
+        }
+        let colour = e.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, at))?;
+        let shape = Emission::new(Vec::new(), e.cosine_power, e.two_sided);
+        let given = [
+            e.radiance.map(|r| (r.value, r.kind)),
+            e.exitance.map(|m| (m.value / shape.exitance_per_radiance(), m.kind)),
+            e.flux.map(|f| (f.value / shape.exitance_per_radiance() / area, f.kind)),
+        ];
+        let mut given = given.into_iter().flatten();
+        let radiance = match (given.next(), given.next()) {
+            (Some((value, kind)), None) => self.scaled(&colour, value, kind, bands, quantities, at)?,
+            // The radiance as the spectrum itself has it.
+            (None, _) if e.spectrum.is_some() => {
+                colour.values(bands).map_err(|nm| self.wrong(at, format!("a line at {nm} nm without a band")))?
+            }
+            _ => {
+                return Err(self.wrong(
+                    at,
+                    "an emission without or with several amounts; expected one of radiance, exitance, flux",
+                ));
+            }
+        };
+        if let Some(bad) = radiance.iter().find(|r| !(**r >= 0.0 && r.is_finite())) {
+            return Err(self.wrong(
+                at,
+                format!("a radiance of {bad}; expected 0 or more, and an area that is finite where a flux is given"),
+            ));
+        }
+        Ok(Emission::new(radiance, e.cosine_power, e.two_sided))
+    }
+}
+
+/// The six faces of a box; normals outwards, or inwards for a room.
+fn cuboid(a: DVec3, b: DVec3, inwards: bool) -> Result<Vec<Arc<dyn Shape>>, ShapeError> {
+    let (min, max) = (a.min(b), a.max(b));
+    let size = max - min;
+    let mut faces: Vec<Arc<dyn Shape>> = Vec::with_capacity(6);
+    for axis in 0..3 {
+        let (s, t) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (s, t) = (DVec3::AXES[s] * size[s], DVec3::AXES[t] * size[t]);
+        for far in [false, true] {
+            let corner = if far { min + DVec3::AXES[axis] * size[axis] } else { min };
+            // s × t points along +axis.
+            let (first, second) = if far == inwards { (t, s) } else { (s, t) };
+            faces.push(Arc::new(Rectangle::new(corner, first, second)?));
+        }
+    }
+    Ok(faces)
+}

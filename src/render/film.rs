@@ -1,0 +1,190 @@
+//! A camera's picture: radiance per band and tristimulus values, rendered row by row as whoever writes it asks for them.
+
+use rayon::prelude::*;
+
+use super::estimate::{Faults, stream};
+use super::integrator::path::PathTracer;
+use super::measure::Settings;
+use super::sampler::Sampler;
+use super::scene::Scene;
+use super::sensor::camera::Camera;
+use crate::image::description::{Channel, Content, Description, Meaning};
+use crate::image::error::Error;
+use crate::image::source::{self, Region, Source};
+use crate::spectrum::{Per, Quantity, SpectralUnit};
+
+/// The luminance of a picture and how sure it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Noise {
+    /// Pixels rendered.
+    pub pixels: u64,
+    /// Σ of the luminances.
+    pub luminance: f64,
+    /// Σ of the variances of the pixels' means, estimated from the scatter of their samples. Samples of a pixel are spread
+    /// evenly, which this estimate does not know: it errs to the safe side.
+    pub variance: f64,
+    /// Samples left out of the means.
+    pub faults: Faults,
+}
+
+/// A picture that is rendered when it is read.
+///
+/// Its channels are the bands of the scene (spectral radiance), then X, Y, Z in cd/m² of the observer whose weights it was given.
+/// The value of a pixel is the mean over the pixel's square (box filter). A region that is read twice is rendered twice, to the same
+/// bits.
+#[derive(Debug)]
+pub struct Film<'a, F> {
+    scene: &'a Scene,
+    camera: &'a Camera,
+    settings: &'a Settings,
+    /// Number of the instrument in the render.
+    instrument: u64,
+    samples: u64,
+    /// Per band, what it adds to X, Y and Z.
+    tristimulus: &'a [[f64; 3]],
+    description: Description,
+    progress: F,
+    noise: Noise,
+}
+
+impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
+    /// A picture of `samples` samples a pixel; `progress` is told of pixels as they are done.
+    #[must_use]
+    pub fn new(
+        scene: &'a Scene,
+        camera: &'a Camera,
+        settings: &'a Settings,
+        instrument: u64,
+        samples: u64,
+        tristimulus: &'a [[f64; 3]],
+        progress: F,
+    ) -> Self {
+        let unit = SpectralUnit {
+            factor: 1.0,
+            photons: false,
+            quantity: Quantity::Radiance,
+            per: Per::Wavelength,
+            text: "W/m2/sr/nm".to_owned(),
+        };
+        let mut channels: Vec<Channel> = (scene.bands().wavelengths_nm().iter())
+            .map(|nm| Channel::band(format!("{nm} nm"), unit.text.clone(), *nm))
+            .collect();
+        channels.extend(
+            (["X", "Y", "Z"].into_iter().zip(0..)).map(|(n, i)| Channel::new(n, "cd/m2", Meaning::Tristimulus(i))),
+        );
+        let (width, height) = (camera.width() as usize, camera.height() as usize);
+        let content = Content::Light { quantity: Some(Quantity::Radiance), unit: Some(unit) };
+        let description = Description { width, height, channels, content, rgb: None, attributes: Vec::new() };
+        Self {
+            scene,
+            camera,
+            settings,
+            instrument,
+            samples,
+            tristimulus,
+            description,
+            progress,
+            noise: Noise::default(),
+        }
+    }
+
+    /// Luminance and noise of what was rendered so far.
+    #[must_use]
+    pub fn noise(&self) -> Noise {
+        self.noise
+    }
+
+    /// Renders one pixel: means per band into `bands`; what it adds to the noise.
+    fn pixel(&self, tracer: &mut PathTracer<'_>, x: usize, y: usize, bands: &mut [f64]) -> Noise {
+        bands.fill(0.0);
+        let pixel = stream(self.instrument, y * self.description.width + x);
+        let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
+        let mut faults = Faults::default();
+        // Welford's running mean and sum of squared deviations of the luminance.
+        let (mut mean, mut squares, mut count) = (0.0, 0.0, 0.0);
+        for index in 0..self.samples {
+            sampler.start(index);
+            let [u, v, lens @ ..] = sampler.four();
+            let mut luminance = 0.0;
+            #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
+            if let Some(ray) = self.camera.ray(x as f64 + u, y as f64 + v, lens) {
+                let sample = tracer.radiance(ray, &mut sampler);
+                if !faults.accept(sample, pixel, index) {
+                    continue;
+                }
+                for ((b, s), t) in bands.iter_mut().zip(sample).zip(self.tristimulus) {
+                    *b += s;
+                    luminance += s * t[1];
+                }
+            }
+            count += 1.0;
+            let deviation = luminance - mean;
+            mean += deviation / count;
+            squares += deviation * (luminance - mean);
+        }
+        if count > 0.0 {
+            bands.iter_mut().for_each(|b| *b /= count);
+        }
+        let variance = if count > 1.0 { squares / (count - 1.0) / count } else { 0.0 };
+        Noise { pixels: 1, luminance: mean, variance, faults }
+    }
+
+    fn row(&self, tracer: &mut PathTracer<'_>, region: Region, y: usize, channels: &[usize], out: &mut [f32]) -> Noise {
+        let mut values = vec![0.0; self.description.channels.len()];
+        let mut noise = Noise::default();
+        for column in 0..region.width {
+            let (bands, xyz) = values.split_at_mut(self.tristimulus.len());
+            noise.append(&self.pixel(tracer, region.x + column, y, bands));
+            for (component, sum) in xyz.iter_mut().enumerate() {
+                *sum = bands.iter().zip(self.tristimulus).map(|(b, t)| b * t[component]).sum();
+            }
+            for (place, channel) in channels.iter().enumerate() {
+                #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
+                let sample = values[*channel] as f32;
+                out[place * region.width + column] = sample;
+            }
+        }
+        (self.progress)(region.width as u64);
+        noise
+    }
+}
+
+impl Noise {
+    fn append(&mut self, later: &Self) {
+        self.pixels += later.pixels;
+        self.luminance += later.luminance;
+        self.variance += later.variance;
+        self.faults.append(&later.faults);
+    }
+
+    /// Root of the mean variance of the pixels over their mean luminance: the relative noise of the picture.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
+        let n = self.pixels.max(1) as f64;
+        if self.luminance > 0.0 { (self.variance / n).sqrt() / (self.luminance / n) } else { 0.0 }
+    }
+}
+
+impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), Error> {
+        source::check(&self.description, region, channels, out);
+        if out.is_empty() {
+            return Ok(());
+        }
+        let rows: Vec<Noise> = out
+            .par_chunks_mut(region.width * channels.len())
+            .enumerate()
+            .map_init(
+                || PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes),
+                |tracer, (row, out)| self.row(tracer, region, region.y + row, channels, out),
+            )
+            .collect();
+        rows.iter().for_each(|row| self.noise.append(row));
+        Ok(())
+    }
+}

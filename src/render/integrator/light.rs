@@ -1,0 +1,110 @@
+//! Light tracing: packets of flux from the lights through the scene, until they are absorbed or leave it.
+//!
+//! Every packet carries the flux of all bands. Where it meets a surface, a direction is drawn and the flux multiplied by
+//! f_s |cosθ| / pdf, so that the mean over packets is the flux itself. What is done with packets (counted through a sphere, sorted by
+//! the direction in which they leave) is the visitor's business.
+
+use super::frame::Frame;
+use crate::math::sampling;
+use crate::render::material::Transport;
+use crate::render::ray::Ray;
+use crate::render::sampler::Sampler;
+use crate::render::scene::Scene;
+
+/// Who looks at packets on their way. Slices are flux per band, W/nm or W, of one packet.
+pub trait Visitor {
+    /// A packet leaves a light.
+    fn emitted(&mut self, flux: &[f64]);
+
+    /// A packet flies along a ray for `length` metres (infinite: it leaves the scene).
+    fn flight(&mut self, ray: &Ray, length: f64, flux: &[f64]);
+
+    /// A packet arrives at a surface with `before` and goes on with `after` (zero where it ends).
+    fn met(&mut self, surface: usize, before: &[f64], after: &[f64]);
+}
+
+/// The light tracer of one thread.
+#[derive(Debug)]
+pub struct LightTracer<'a> {
+    scene: &'a Scene,
+    heroes: &'a [f64],
+    /// Running sums, up to 1, of the probabilities of the lights: their shares in the flux.
+    lights: Vec<f64>,
+    flux: Vec<f64>,
+    before: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+impl<'a> LightTracer<'a> {
+    /// A tracer for a scene; `heroes` as for [`super::path::PathTracer::new`].
+    #[must_use]
+    pub fn new(scene: &'a Scene, heroes: &'a [f64]) -> Self {
+        let n = scene.bands().len();
+        let mut flux = vec![0.0; n];
+        let mut sum = 0.0;
+        let mut lights: Vec<f64> = (scene.lights().iter())
+            .map(|light| {
+                light.flux(&mut flux);
+                sum += flux.iter().sum::<f64>();
+                sum
+            })
+            .collect();
+        lights.iter_mut().for_each(|l| *l /= sum);
+        Self { scene, heroes, lights, flux, before: vec![0.0; n], weights: vec![0.0; n] }
+    }
+
+    /// Sends one packet through the scene.
+    pub fn packet(&mut self, sampler: &mut Sampler, visitor: &mut impl Visitor) {
+        let [choice, u0, u1, hero] = sampler.four();
+        let [u2, u3, u4, _] = sampler.four();
+        let index = self.lights.partition_point(|&s| s <= choice);
+        let Some(light) = self.scene.lights().get(index) else { return };
+        let probability = self.lights[index] - if index == 0 { 0.0 } else { self.lights[index - 1] };
+        let Some(mut ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
+        self.flux.iter_mut().for_each(|f| *f /= probability);
+        visitor.emitted(&self.flux);
+        let start: f64 = self.flux.iter().sum();
+        let hero = self.heroes.partition_point(|&s| s <= hero).min(self.heroes.len() - 1);
+        let mut split = false;
+        loop {
+            let Some((surface, crossing)) = self.scene.surfaces().closest(&ray, f64::INFINITY) else {
+                visitor.flight(&ray, f64::INFINITY, &self.flux);
+                return;
+            };
+            visitor.flight(&ray, crossing.t, &self.flux);
+            let point = self.scene.surfaces().surface_point(surface, &ray, &crossing);
+            let frame = Frame::of(point.shading, point.tangent);
+            let arriving = frame.local(-ray.direction);
+            self.before.copy_from_slice(&self.flux);
+            let [u0, u1, u2, chance] = sampler.four();
+            let material = self.scene.material(surface);
+            let drawn = material.sample(arriving, [u0, u1, u2], Transport::Flux, hero, &mut self.weights);
+            let next = drawn.and_then(|drawn| {
+                let direction = frame.world(drawn.direction);
+                (direction.dot(point.normal) * drawn.direction.z > 0.0).then_some((drawn, direction))
+            });
+            let Some((drawn, direction)) = next else {
+                self.flux.fill(0.0);
+                visitor.met(surface, &self.before, &self.flux);
+                return;
+            };
+            self.flux.iter_mut().zip(&self.weights).for_each(|(f, w)| *f *= w);
+            if drawn.split && !split {
+                split = true;
+                let below = if hero == 0 { 0.0 } else { self.heroes[hero - 1] };
+                self.flux[hero] /= self.heroes[hero] - below;
+            }
+            visitor.met(surface, &self.before, &self.flux);
+            // Packets keep about the flux that they started with; the weak ones end by chance.
+            let strength = self.flux.iter().sum::<f64>() / start;
+            if strength < 1.0 {
+                let (goes_on, _) = sampling::split(chance, strength);
+                if !goes_on {
+                    return;
+                }
+                self.flux.iter_mut().for_each(|f| *f /= strength);
+            }
+            ray = Ray { origin: point.origin_towards(direction), direction };
+        }
+    }
+}

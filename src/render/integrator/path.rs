@@ -1,0 +1,307 @@
+//! Path tracing: paths from the instrument into the scene, lights sought at every vertex, both ways of finding a light weighed
+//! against each other, long paths ended by chance.
+//!
+//! ```text
+//! L ≈ Σ_k T_k [ Σ_s w_s f_s L_s |cosθ| / p_s ],    T_k = Π f_s |cosθ| / (p q)
+//! w_s = p_s² / Σ p²        power heuristic of multiple importance sampling
+//! q = min(1, max_b T_b)    probability of going on (Russian roulette)
+//! ```
+//!
+//! With [`Follow::Specular`] it is the ray tracing of T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23 (1980).
+//!
+//! References: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, thesis, Stanford 1997, ch. 9 and 10; J. Arvo &
+//! D. Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990.
+
+use glam::DVec3;
+
+use super::choice::Choice;
+use super::frame::Frame;
+use crate::render::material::{Material, Transport};
+use crate::render::ray::{Ray, SurfacePoint};
+use crate::render::sampler::Sampler;
+use crate::render::scene::Scene;
+use crate::render::sensor::response::Response;
+
+/// After which vertices a path goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Follow {
+    /// All: global illumination.
+    #[default]
+    All,
+    /// Mirrors and glass only: direct light, seen also in reflections and through glass (Whitted's ray tracing, one branch drawn).
+    Specular,
+    /// None: direct light alone.
+    Nothing,
+}
+
+/// What a path may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Which vertices it is followed through.
+    pub follow: Follow,
+    /// The greatest number of edges from the instrument to the light; `None`: no path is cut, chance alone ends it.
+    pub max_edges: Option<u32>,
+    /// The edge from which on a path may be ended by chance.
+    pub roulette_from: u32,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { follow: Follow::All, max_edges: None, roulette_from: 4 }
+    }
+}
+
+/// The path tracer of one thread: it owns what a path needs, so that no sample allocates.
+#[derive(Debug)]
+pub struct PathTracer<'a> {
+    scene: &'a Scene,
+    limits: Limits,
+    /// Probability with which each band is the hero of a path, cumulative.
+    heroes: &'a [f64],
+    throughput: Vec<f64>,
+    value: Vec<f64>,
+    arriving: Vec<f64>,
+    choice: Choice,
+    /// What the sample carries, per band.
+    radiance: Vec<f64>,
+    /// Bands that the path carries no more (it was refracted for one wavelength).
+    split: bool,
+    hero: usize,
+}
+
+/// Where the path stands before its next edge.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    ray: Ray,
+    /// The density per solid angle of the ray's direction; `None` for an edge that no light sampling competes with.
+    pdf: Option<f64>,
+    /// Where it starts, for the lights' densities.
+    from: DVec3,
+}
+
+impl<'a> PathTracer<'a> {
+    /// A tracer for a scene; `heroes` are the running sums, up to 1, of the probabilities with which a band is chosen where a path
+    /// must be split.
+    #[must_use]
+    pub fn new(scene: &'a Scene, limits: Limits, heroes: &'a [f64]) -> Self {
+        let n = scene.bands().len();
+        Self {
+            scene,
+            limits,
+            heroes,
+            throughput: vec![1.0; n],
+            value: vec![0.0; n],
+            arriving: vec![0.0; n],
+            choice: Choice::default(),
+            radiance: vec![0.0; n],
+            split: false,
+            hero: 0,
+        }
+    }
+
+    /// One sample of the radiance along a ray, per band.
+    pub fn radiance(&mut self, ray: Ray, sampler: &mut Sampler) -> &[f64] {
+        self.start(sampler);
+        self.follow(Edge { ray, pdf: None, from: ray.origin }, sampler);
+        &self.radiance
+    }
+
+    /// One sample of ∫ R(ω) L(ω) dω at a point whose frame is turned to the instrument's axis, per band.
+    pub fn reading(&mut self, point: &SurfacePoint, response: &Response, sampler: &mut Sampler) -> &[f64] {
+        self.start(sampler);
+        let frame = Frame::of(point.normal, point.tangent);
+        let [u0, u1, u2, u3] = sampler.four();
+        if response.seeks_lights() {
+            self.choice.prepare(self.scene, point.position);
+            self.light(
+                point,
+                [u0, u1, u2, u3],
+                |local, value| {
+                    value.fill(response.weight(local));
+                    response.pdf(local)
+                },
+                &frame,
+            );
+        }
+        let [u0, u1, ..] = sampler.four();
+        let (local, weight) = response.sample([u0, u1]);
+        self.throughput.fill(weight);
+        let direction = frame.world(local);
+        let ray = Ray { origin: point.origin_towards(direction), direction };
+        let pdf = response.seeks_lights().then(|| response.pdf(local));
+        self.follow(Edge { ray, pdf, from: point.position }, sampler);
+        &self.radiance
+    }
+
+    fn start(&mut self, sampler: &mut Sampler) {
+        self.throughput.fill(1.0);
+        self.radiance.fill(0.0);
+        self.split = false;
+        let [u, ..] = sampler.four();
+        self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
+    }
+
+    fn follow(&mut self, start: Edge, sampler: &mut Sampler) {
+        let mut edge = start;
+        for count in 1.. {
+            let Some((surface, crossing)) = self.scene.surfaces().closest(&edge.ray, f64::INFINITY) else {
+                self.escape(&edge);
+                return;
+            };
+            let point = self.scene.surfaces().surface_point(surface, &edge.ray, &crossing);
+            self.emission(&edge, surface, &point);
+            if self.limits.max_edges.is_some_and(|max| count >= max) {
+                return;
+            }
+            match self.scatter(&edge, surface, &point, count, sampler) {
+                Some(next) => edge = next,
+                None => return,
+            }
+        }
+    }
+
+    /// Adds what a ray meets that leaves the scene.
+    fn escape(&mut self, edge: &Edge) {
+        for (index, light) in self.scene.lights().iter().enumerate() {
+            self.value.fill(0.0);
+            light.add_radiance(edge.ray.direction, &mut self.value);
+            let weight = edge.pdf.map_or(1.0, |pdf| {
+                let other = self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction);
+                power_heuristic(pdf, other)
+            });
+            self.add(weight);
+        }
+    }
+
+    /// Adds what the surface at the end of an edge emits towards it.
+    fn emission(&mut self, edge: &Edge, surface: usize, point: &SurfacePoint) {
+        let Some(emission) = self.scene.emission(surface) else { return };
+        let profile = emission.profile(-point.normal.dot(edge.ray.direction));
+        if profile == 0.0 {
+            return;
+        }
+        let weight = match (edge.pdf, self.scene.light_of_surface(surface)) {
+            (Some(pdf), Some(light)) => {
+                let towards = self.scene.lights()[light].pdf_towards(edge.from, edge.ray.direction);
+                power_heuristic(pdf, self.choice.probability(light) * towards)
+            }
+            _ => 1.0,
+        };
+        self.value.copy_from_slice(emission.radiance());
+        self.add(weight * profile);
+    }
+
+    /// Seeks a light from a vertex and draws the next edge.
+    fn scatter(
+        &mut self,
+        edge: &Edge,
+        surface: usize,
+        point: &SurfacePoint,
+        count: u32,
+        sampler: &mut Sampler,
+    ) -> Option<Edge> {
+        let material = self.scene.material(surface);
+        let frame = Frame::of(point.shading, point.tangent);
+        let outgoing = frame.local(-edge.ray.direction);
+        let u = sampler.four();
+        let seek = !material.is_delta();
+        if seek {
+            self.choice.prepare(self.scene, point.position);
+            self.light(point, u, |incident, value| evaluate(material, incident, outgoing, value), &frame);
+        }
+        if self.limits.follow == Follow::Nothing {
+            return None;
+        }
+        let [u0, u1, u2, u3] = sampler.four();
+        let drawn = material.sample(outgoing, [u0, u1, u2], Transport::Radiance, self.hero, &mut self.value)?;
+        if self.limits.follow == Follow::Specular && !drawn.delta {
+            return None;
+        }
+        let direction = frame.world(drawn.direction);
+        // A shading normal can send light through the surface: no light goes there.
+        if direction.dot(point.normal) * drawn.direction.z <= 0.0 {
+            return None;
+        }
+        multiply(&mut self.throughput, &self.value);
+        if drawn.split && !self.split {
+            self.split = true;
+            let before = if self.hero == 0 { 0.0 } else { self.heroes[self.hero - 1] };
+            self.throughput[self.hero] /= self.heroes[self.hero] - before;
+        }
+        let strength = self.throughput.iter().copied().fold(0.0, f64::max);
+        if count >= self.limits.roulette_from && strength < 1.0 {
+            if u3 >= strength {
+                return None;
+            }
+            self.throughput.iter_mut().for_each(|t| *t /= strength);
+        }
+        if strength == 0.0 {
+            return None;
+        }
+        let ray = Ray { origin: point.origin_towards(direction), direction };
+        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position })
+    }
+
+    /// Adds the light that one light, drawn at random, sends to a vertex straight away. `function` writes f |cosθ| per band for a local
+    /// direction and gives the density with which the vertex's own sampling draws it.
+    fn light(
+        &mut self,
+        point: &SurfacePoint,
+        [u0, u1, u2, _]: [f64; 4],
+        function: impl Fn(DVec3, &mut [f64]) -> f64,
+        frame: &Frame,
+    ) {
+        let Some((index, probability, stretched)) = self.choice.draw(u0) else { return };
+        let light = &self.scene.lights()[index];
+        let Some(towards) = light.sample_towards(point.position, [stretched, u1, u2], &mut self.arriving) else {
+            return;
+        };
+        let local = frame.local(towards.direction);
+        if towards.direction.dot(point.normal) * local.z <= 0.0 {
+            return;
+        }
+        let own = function(local, &mut self.value);
+        if self.value.iter().all(|&v| v == 0.0) {
+            return;
+        }
+        let ray = Ray { origin: point.origin_towards(towards.direction), direction: towards.direction };
+        if self.scene.surfaces().is_occluded(&ray, towards.distance, self.scene.surface_of_light(index)) {
+            return;
+        }
+        let weight = if towards.delta {
+            1.0 / probability
+        } else {
+            let pdf = probability * towards.pdf;
+            power_heuristic(pdf, own) / pdf
+        };
+        multiply(&mut self.value, &self.arriving);
+        self.add(weight);
+    }
+
+    /// Adds throughput · value · weight.
+    fn add(&mut self, weight: f64) {
+        for ((r, t), v) in self.radiance.iter_mut().zip(&self.throughput).zip(&self.value) {
+            *r += t * v * weight;
+        }
+    }
+}
+
+/// Writes f_s |cosθ_i| and gives the density of the material's own sampling.
+fn evaluate(material: &dyn Material, incident: DVec3, outgoing: DVec3, value: &mut [f64]) -> f64 {
+    material.evaluate(incident, outgoing, Transport::Radiance, value);
+    value.iter_mut().for_each(|v| *v *= incident.z.abs());
+    material.pdf(outgoing, incident)
+}
+
+fn multiply(values: &mut [f64], by: &[f64]) {
+    values.iter_mut().zip(by).for_each(|(v, b)| *v *= b);
+}
+
+/// p² / (p² + o²), without overflow.
+fn power_heuristic(p: f64, o: f64) -> f64 {
+    if p == 0.0 {
+        return 0.0;
+    }
+    let ratio = o / p;
+    1.0 / (1.0 + ratio * ratio)
+}

@@ -1,0 +1,147 @@
+//! Readings of meters by path tracing: as many samples as asked for, or until they are sure enough.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::estimate::{Estimate, REPLICATES, Replicate, stream};
+use super::integrator::path::{Limits, PathTracer};
+use super::ray::SurfacePoint;
+use super::sampler::Sampler;
+use super::scene::Scene;
+use super::sensor::response::Response;
+use super::shape::Shape;
+use super::spool::Share;
+
+/// Where a meter reads.
+#[derive(Debug, Clone)]
+pub enum Place {
+    /// At a point, whose normal is the instrument's axis.
+    Point(SurfacePoint),
+    /// All over a shape, on its outside: the mean over its area.
+    Area(Arc<dyn Shape>),
+}
+
+/// A meter.
+#[derive(Debug, Clone)]
+pub struct Meter {
+    /// Where it is.
+    pub place: Place,
+    /// What it makes of the radiance around it.
+    pub response: Response,
+}
+
+/// How a solver is to be run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Names all random numbers.
+    pub seed: u64,
+    /// What paths may do.
+    pub limits: Limits,
+    /// Running sums, up to 1, of the probabilities with which a band is kept where a path must be split, one per band.
+    pub heroes: Vec<f64>,
+}
+
+impl Settings {
+    /// For `bands` bands chosen alike.
+    #[must_use]
+    pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
+        let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
+        Self { seed, limits, heroes }
+    }
+}
+
+/// A number of meters and what they read so far.
+///
+/// The same numbers come out for any number of threads, in one go or in several, in one share or in many.
+#[derive(Debug)]
+pub struct Board<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    share: Share,
+    meters: Vec<(u64, Meter)>,
+    /// [`REPLICATES`] of each meter.
+    replicates: Vec<Replicate>,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// The greatest standard error relative to the reading.
+    pub relative: f64,
+    /// Which meters must reach it, by their place on the board.
+    pub meters: Vec<usize>,
+    /// What each band adds to the reading that counts.
+    pub weights: Vec<f64>,
+}
+
+impl<'a> Board<'a> {
+    /// Meters, each with its number in the render, which names its random numbers; nothing is read yet.
+    #[must_use]
+    pub fn new(scene: &'a Scene, settings: &'a Settings, share: Share, meters: Vec<(u64, Meter)>) -> Self {
+        let replicates = vec![Replicate::new(scene.bands().len()); REPLICATES * meters.len()];
+        Self { scene, settings, share, meters, replicates }
+    }
+
+    /// Samples until every replicate of this share has `samples` of them.
+    pub fn sample_until(&mut self, samples: u64) {
+        let (scene, settings, share, meters) = (self.scene, self.settings, self.share, &self.meters);
+        self.replicates.par_iter_mut().enumerate().filter(|(i, _)| share.has(i % REPLICATES)).for_each_init(
+            || PathTracer::new(scene, settings.limits, &settings.heroes),
+            |tracer, (index, replicate)| {
+                let (instrument, meter) = &meters[index / REPLICATES];
+                let stream = stream(*instrument, index % REPLICATES);
+                let mut sampler = Sampler::new(settings.seed, stream, 0);
+                while replicate.samples() < samples {
+                    sampler.start(replicate.samples());
+                    let point = match &meter.place {
+                        Place::Point(point) => *point,
+                        Place::Area(shape) => {
+                            let [u, v, w, _] = sampler.four();
+                            shape.sample_area([u, v, w])
+                        }
+                    };
+                    replicate.add(stream, tracer.reading(&point, &meter.response, &mut sampler));
+                }
+            },
+        );
+    }
+
+    /// Samples in rounds, each doubling what there is, until the target is met or every replicate has `most` samples; whether it was
+    /// met. `round` is told of the samples per replicate after each round.
+    pub fn sample_to(&mut self, target: &Target, most: u64, mut round: impl FnMut(&Self, u64)) -> bool {
+        /// Fewer samples than this say too little about their own scatter.
+        const LEAST: u64 = 64;
+        let mut samples = LEAST.min(most);
+        loop {
+            self.sample_until(samples);
+            round(self, samples);
+            let met = target.meters.iter().all(|&meter| {
+                let figure = self.estimate(meter).figure(&target.weights);
+                figure.standard_error <= target.relative * figure.value.abs()
+            });
+            if met || samples >= most {
+                return met;
+            }
+            samples = (2 * samples).min(most);
+        }
+    }
+
+    /// What a meter reads.
+    #[must_use]
+    pub fn estimate(&self, meter: usize) -> Estimate {
+        Estimate::new(self.replicates(meter).to_vec())
+    }
+
+    /// The replicates of a meter.
+    #[must_use]
+    pub fn replicates(&self, meter: usize) -> &[Replicate] {
+        &self.replicates[meter * REPLICATES..][..REPLICATES]
+    }
+
+    /// Puts a replicate in place that was sampled before.
+    pub fn restore(&mut self, meter: usize, replicate: usize, state: Replicate) {
+        self.replicates[meter * REPLICATES + replicate] = state;
+    }
+}

@@ -1,0 +1,271 @@
+//! Cameras: from a place on the picture, and on the lens, to a ray.
+//!
+//! | camera | from the axis angle θ to the radius on the picture | source |
+//! |---|---|---|
+//! | perspective | tanθ, then the lens's distortion | [`crate::geometry::lens`] |
+//! | thin lens | tanθ; everything at the focal distance is sharp | Kolb, Mitchell & Hanrahan, SIGGRAPH 1995 |
+//! | fisheye | θ (equidistant) | K. Miyamoto, JOSA 54 (1964) |
+//! | equirectangular | azimuth and elevation are the coordinates | |
+//!
+//! Pictures are looked at from behind: x grows to the right, y downwards, (0, 0) is the upper left corner of the upper left pixel.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::{DVec2, DVec3};
+
+use crate::geometry::lens::Distortion;
+use crate::math::sampling;
+use crate::render::ray::Ray;
+
+/// How directions are laid out on the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Straight lines stay straight but for the lens's distortion.
+    Perspective {
+        /// The angle across the picture's width, degrees, below 180; measured without distortion.
+        field_of_view_deg: f64,
+        /// Of the lens.
+        distortion: Distortion,
+    },
+    /// Perspective through a lens of some extent.
+    ThinLens {
+        /// The angle across the picture's width, degrees, below 180.
+        field_of_view_deg: f64,
+        /// Radius of the aperture, m.
+        aperture_radius_m: f64,
+        /// Distance, along the axis, of the plane that is sharp, m.
+        focus_m: f64,
+    },
+    /// The radius on the picture is proportional to the angle to the axis; dark beyond the circle.
+    Fisheye {
+        /// The angle across the circle, whose diameter is the picture's shorter side, degrees, up to 360.
+        field_of_view_deg: f64,
+    },
+    /// All directions: the azimuth from left (−180°) to right, the elevation from top (90°) to bottom; the axis is the middle.
+    Equirectangular,
+}
+
+/// A camera that records radiance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    position: DVec3,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    projection: Projection,
+    width: u32,
+    height: u32,
+}
+
+/// Why a camera was refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// It looks at its own place, or along its upward direction, or a number is not finite.
+    #[error("a camera at {position} that looks at {target} with {up} upwards; expected three different directions")]
+    Frame {
+        /// Where it stands.
+        position: DVec3,
+        /// What it looks at.
+        target: DVec3,
+        /// Its upward direction.
+        up: DVec3,
+    },
+    /// The field of view.
+    #[error("a field of view of {degrees}°; expected more than 0° and {below}")]
+    FieldOfView {
+        /// What was found.
+        degrees: f64,
+        /// The upper limit, in words.
+        below: &'static str,
+    },
+    /// The lens of a thin-lens camera.
+    #[error(
+        "an aperture of radius {aperture_m} m focused at {focus_m} m; expected a radius of 0 or more and a distance above 0"
+    )]
+    Lens {
+        /// Radius of the aperture, m.
+        aperture_m: f64,
+        /// Focal distance, m.
+        focus_m: f64,
+    },
+    /// No pixels.
+    #[error("a picture of {width} × {height} pixels; expected at least one")]
+    Resolution {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+}
+
+impl Camera {
+    /// A camera at `position` that looks at `target`.
+    ///
+    /// # Errors
+    /// [`Error`].
+    pub fn new(
+        position: DVec3,
+        target: DVec3,
+        up: DVec3,
+        projection: Projection,
+        [width, height]: [u32; 2],
+    ) -> Result<Self, Error> {
+        let forward = (target - position).normalize_or_zero();
+        let right = forward.cross(up).normalize_or_zero();
+        if !(position.is_finite() && forward.length() > 0.0 && right.length() > 0.0) {
+            return Err(Error::Frame { position, target, up });
+        }
+        let within = |degrees: f64, most: f64, below| {
+            // Written so that a NaN is refused.
+            if degrees > 0.0 && degrees <= most { Ok(()) } else { Err(Error::FieldOfView { degrees, below }) }
+        };
+        match projection {
+            Projection::Perspective { field_of_view_deg, .. } => {
+                within(field_of_view_deg, 180_f64.next_down(), "less than 180°")?;
+            }
+            Projection::ThinLens { field_of_view_deg, aperture_radius_m, focus_m } => {
+                within(field_of_view_deg, 180_f64.next_down(), "less than 180°")?;
+                if !(aperture_radius_m >= 0.0 && focus_m > 0.0 && aperture_radius_m.is_finite() && focus_m.is_finite())
+                {
+                    return Err(Error::Lens { aperture_m: aperture_radius_m, focus_m });
+                }
+            }
+            Projection::Fisheye { field_of_view_deg } => within(field_of_view_deg, 360.0, "at most 360°")?,
+            Projection::Equirectangular => {}
+        }
+        if width == 0 || height == 0 {
+            return Err(Error::Resolution { width, height });
+        }
+        Ok(Self { position, right, up: right.cross(forward), forward, projection, width, height })
+    }
+
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The ray through a point of the picture, in pixels, and a point of the lens, two uniform numbers; `None` where the picture is
+    /// dark whatever the scene.
+    #[must_use]
+    pub fn ray(&self, x: f64, y: f64, lens: [f64; 2]) -> Option<Ray> {
+        // From −1 to 1 across the width; the same scale downwards.
+        let (w, h) = (f64::from(self.width), f64::from(self.height));
+        let p = DVec2::new(2.0 * x - w, 2.0 * y - h) / w;
+        let ray = |origin: DVec3, d: DVec3| {
+            let direction = (d.x * self.right - d.y * self.up + d.z * self.forward).normalize();
+            Some(Ray { origin, direction })
+        };
+        match self.projection {
+            Projection::Perspective { field_of_view_deg, distortion } => {
+                let tangents = p * (0.5 * field_of_view_deg).to_radians().tan();
+                ray(self.position, distortion.undistort(tangents)?.extend(1.0))
+            }
+            Projection::ThinLens { field_of_view_deg, aperture_radius_m, focus_m } => {
+                let sharp = (p * (0.5 * field_of_view_deg).to_radians().tan()).extend(1.0) * focus_m;
+                let through = sampling::disk(lens) * aperture_radius_m;
+                let origin = self.position + through.x * self.right - through.y * self.up;
+                ray(origin, sharp - through.extend(0.0))
+            }
+            Projection::Fisheye { field_of_view_deg } => {
+                let radius = DVec2::new(2.0 * x - w, 2.0 * y - h) / w.min(h);
+                let r = radius.length();
+                if r > 1.0 {
+                    return None;
+                }
+                let (sin, cos) = (r * (0.5 * field_of_view_deg).to_radians()).sin_cos();
+                let across = if r > 0.0 { radius * (sin / r) } else { DVec2::ZERO };
+                ray(self.position, across.extend(cos))
+            }
+            Projection::Equirectangular => {
+                let (sin, cos) = ((x / w - 0.5) * TAU).sin_cos();
+                let (high, level) = (FRAC_PI_2 - y / h * PI).sin_cos();
+                ray(self.position, DVec3::new(level * sin, -high, level * cos))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(projection: Projection) -> Result<Camera, Error> {
+        let (from, to) = (DVec3::new(1.0, -2.0, 3.0), DVec3::new(1.0, 5.0, 3.0));
+        Camera::new(from, to, DVec3::Z, projection, [400, 200])
+    }
+
+    fn perspective(field_of_view_deg: f64) -> Projection {
+        Projection::Perspective { field_of_view_deg, distortion: Distortion::default() }
+    }
+
+    fn direction(camera: &Camera, x: f64, y: f64) -> DVec3 {
+        camera.ray(x, y, [0.5; 2]).unwrap().direction
+    }
+
+    #[test]
+    fn the_middle_looks_at_the_target_and_the_edges_at_the_field_of_view() {
+        let camera = camera(perspective(60.0)).unwrap();
+        assert!((direction(&camera, 200.0, 100.0) - DVec3::Y).length() < 1e-15);
+        // Right edge: 30° towards +x; the upper edge is half as far in tangent.
+        let right = direction(&camera, 400.0, 100.0);
+        assert!((right.x / right.y - 30_f64.to_radians().tan()).abs() < 1e-15 && right.z.abs() < 1e-15, "{right}");
+        let top = direction(&camera, 200.0, 0.0);
+        assert!((top.z / top.y - 0.5 * 30_f64.to_radians().tan()).abs() < 1e-15, "{top}");
+    }
+
+    #[test]
+    fn distortion_bends_rays_the_way_the_lens_does() {
+        let distortion = Distortion { k1: -0.1, ..Distortion::default() };
+        let camera = camera(Projection::Perspective { field_of_view_deg: 60.0, distortion }).unwrap();
+        let d = direction(&camera, 400.0, 100.0);
+        let seen = distortion.distort(DVec2::new(d.x / d.y, 0.0));
+        assert!((seen.x - 30_f64.to_radians().tan()).abs() < 1e-13, "{seen}");
+    }
+
+    /// All rays through one pixel meet at the focal distance, wherever they pass the lens.
+    #[test]
+    fn a_thin_lens_is_sharp_at_its_focus() {
+        let lens = Projection::ThinLens { field_of_view_deg: 60.0, aperture_radius_m: 0.05, focus_m: 2.0 };
+        let (lens, pinhole) = (camera(lens).unwrap(), camera(perspective(60.0)).unwrap());
+        let expected = pinhole.position + direction(&pinhole, 310.0, 20.0) * (2.0 / direction(&pinhole, 310.0, 20.0).y);
+        for u in [[0.1, 0.2], [0.9, 0.4], [0.5, 0.99]] {
+            let ray = lens.ray(310.0, 20.0, u).unwrap();
+            assert!((ray.origin - pinhole.position).length() <= 0.05 && ray.origin != pinhole.position);
+            assert!((ray.at((expected.y - ray.origin.y) / ray.direction.y) - expected).length() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn fisheye_and_equirectangular_angles_are_proportional() {
+        let fisheye = camera(Projection::Fisheye { field_of_view_deg: 180.0 }).unwrap();
+        // Half the radius to the right: 45°.
+        let d = direction(&fisheye, 250.0, 100.0);
+        assert!((d - DVec3::new(1.0, 1.0, 0.0).normalize()).length() < 1e-15, "{d}");
+        assert!(fisheye.ray(0.0, 0.0, [0.5; 2]).is_none());
+        let all = camera(Projection::Equirectangular).unwrap();
+        assert!((direction(&all, 300.0, 100.0) - DVec3::X).length() < 1e-15);
+        assert!((direction(&all, 200.0, 0.0) - DVec3::Z).length() < 1e-15);
+        assert!((direction(&all, 0.0, 100.0) - DVec3::NEG_Y).length() < 1e-15);
+    }
+
+    #[test]
+    fn a_camera_that_cannot_be_is_refused() {
+        let new = |from, to, projection, size| Camera::new(from, to, DVec3::Z, projection, size);
+        let (at, to, size) = (DVec3::ZERO, DVec3::X, [1, 1]);
+        assert!(matches!(new(at, at, perspective(60.0), size), Err(Error::Frame { .. })));
+        assert!(matches!(new(at, DVec3::Z, perspective(60.0), size), Err(Error::Frame { .. })));
+        assert!(matches!(new(at, to, perspective(180.0), size), Err(Error::FieldOfView { .. })));
+        assert!(matches!(new(at, to, perspective(f64::NAN), size), Err(Error::FieldOfView { .. })));
+        assert!(matches!(new(at, to, perspective(60.0), [0, 1]), Err(Error::Resolution { .. })));
+        let lens = Projection::ThinLens { field_of_view_deg: 60.0, aperture_radius_m: 0.1, focus_m: 0.0 };
+        assert!(matches!(new(at, to, lens, size), Err(Error::Lens { .. })));
+    }
+}

@@ -1,0 +1,125 @@
+//! What a meter makes of the radiance from each direction: reading = ∫ R(ω) L(ω) dω.
+//!
+//! | reading | R(ω), θ to the meter's axis | source |
+//! |---|---|---|
+//! | irradiance (illuminance) on a plane | cosθ above the plane | ILV 17-21-053 |
+//! | hemispherical | (1 + cosθ)/2 | CIE 202:2011, half a sphere's mean over its surface |
+//! | cylindrical | sinθ/π | ILV 17-21-058 |
+//! | spherical (scalar) | 1/4 | a sphere's mean over its surface |
+//! | radiance (luminance) in a cone | 1/(π sin²α) · cosθ within α | mean, weighted as an instrument's detector sees it |
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+
+use crate::math::sampling;
+
+/// The directional response of a meter, in its own frame: +z is its axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Response {
+    /// Irradiance on a plane that faces +z.
+    Planar,
+    /// Mean irradiance of a small hemisphere's outer surface, pole at +z.
+    Hemispherical,
+    /// Mean irradiance of a small upright cylinder's side, axis z.
+    Cylindrical,
+    /// Mean irradiance of a small sphere's surface.
+    Spherical,
+    /// Mean radiance of a cone about +z of the given sine of its half-angle, in (0, 1].
+    Cone {
+        /// Sine of the half-angle of acceptance.
+        sin: f64,
+    },
+}
+
+impl Response {
+    /// R(ω), per steradian where it is a mean.
+    #[must_use]
+    pub fn weight(&self, direction: DVec3) -> f64 {
+        let cos = direction.z;
+        match *self {
+            Self::Planar => cos.max(0.0),
+            Self::Hemispherical => 0.5 * (1.0 + cos),
+            Self::Cylindrical => direction.x.hypot(direction.y) / PI,
+            Self::Spherical => 0.25,
+            Self::Cone { sin } => {
+                if cos > 0.0 && direction.x.hypot(direction.y) <= sin {
+                    cos / (PI * sin * sin)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
+    /// A direction drawn from two uniform numbers, and R(ω)/pdf.
+    #[must_use]
+    pub fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
+        match *self {
+            Self::Planar => (sampling::cosine_hemisphere(u), PI),
+            Self::Cone { sin } => {
+                let p = sampling::disk(u) * sin;
+                (p.extend((1.0 - p.length_squared()).max(0.0).sqrt()), 1.0)
+            }
+            Self::Hemispherical | Self::Cylindrical | Self::Spherical => {
+                let z = 1.0 - 2.0 * u[0];
+                let r = (1.0 - z * z).max(0.0).sqrt();
+                let (y, x) = (TAU * u[1]).sin_cos();
+                let direction = DVec3::new(r * x, r * y, z);
+                (direction, self.weight(direction) * 2.0 * TAU)
+            }
+        }
+    }
+
+    /// Density per solid angle of [`Response::sample`].
+    #[must_use]
+    pub fn pdf(&self, direction: DVec3) -> f64 {
+        match self {
+            Self::Planar => sampling::cosine_hemisphere_pdf(direction.z),
+            Self::Cone { .. } => self.weight(direction),
+            Self::Hemispherical | Self::Cylindrical | Self::Spherical => 1.0 / (2.0 * TAU),
+        }
+    }
+
+    /// Whether lights are sought from the meter itself: not by one that looks at a small cone, which meets lights by looking.
+    #[must_use]
+    pub fn seeks_lights(&self) -> bool {
+        !matches!(self, Self::Cone { .. })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Response; 6] = [
+        Response::Planar,
+        Response::Hemispherical,
+        Response::Cylindrical,
+        Response::Spherical,
+        Response::Cone { sin: 1.0 },
+        Response::Cone { sin: 0.01 },
+    ];
+
+    /// Under a uniform sky of radiance 1 all round: π, 2π, π, π, and the mean radiance 1, by the integrals of the weights over the sphere.
+    #[test]
+    fn readings_of_a_uniform_sphere_of_light() {
+        let n = 300;
+        for (response, expected) in ALL.iter().zip([PI, TAU, PI, PI, 1.0, 1.0]) {
+            let mut sum = 0.0;
+            for i in 0..n {
+                for j in 0..n {
+                    let u = [(f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n)];
+                    let (direction, weight) = response.sample(u);
+                    assert!((direction.length() - 1.0).abs() < 1e-14);
+                    let ratio = response.weight(direction) / response.pdf(direction);
+                    assert!((weight - ratio).abs() < 1e-9 * expected, "{response:?} {weight} {ratio}");
+                    sum += weight;
+                }
+            }
+            // Midpoint rule: the root at the ends of sinθ's weight, the least smooth, costs below n^-3/2.
+            let mean = sum / f64::from(n * n);
+            assert!((mean / expected - 1.0).abs() < f64::from(n).powf(-1.5), "{response:?}: {mean}");
+        }
+    }
+}

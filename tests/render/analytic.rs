@@ -1,0 +1,161 @@
+//! The cases of `../shared/render/analytic.json`: each within three standard errors at a relative standard error of 0.1 %.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use photopic::brdf::lambert::Lambert;
+use photopic::render::bands::Bands;
+use photopic::render::emission::Emission;
+use photopic::render::estimate::Figure;
+use photopic::render::light::Light;
+use photopic::render::light::point::Point;
+use photopic::render::material::Material;
+use photopic::render::material::opaque::Opaque;
+use photopic::render::measure::{Board, Meter, Place, Settings, Target};
+use photopic::render::ray::SurfacePoint;
+use photopic::render::scene::{Part, Scene};
+use photopic::render::sensor::response::Response;
+use photopic::render::shape::Shape;
+use photopic::render::shape::disk::Disk;
+use photopic::render::shape::rectangle::Rectangle;
+use photopic::render::shape::sphere::Sphere;
+use photopic::render::spool::Share;
+use serde_json::Value;
+
+use crate::common::shared;
+
+/// The relative standard error that the cases are run to.
+const PRECISION: f64 = 1e-3;
+
+fn cases() -> Option<Value> {
+    let text = std::fs::read_to_string(shared("render/analytic.json")?).expect("the cases can be read");
+    Some(serde_json::from_str(&text).expect("the cases are JSON"))
+}
+
+fn value(cases: &Value, name: &str) -> f64 {
+    cases[name]["value"].as_f64().unwrap_or_else(|| panic!("{name} is a number"))
+}
+
+/// One band whose unit is that of the case (cd/m², lx).
+fn band() -> Bands {
+    Bands::lines(vec![555.0])
+}
+
+fn lambert(reflectance: f64) -> Arc<dyn Material> {
+    Arc::new(Opaque::new(Box::new(Lambert::new(vec![reflectance]).expect("a reflectance")), true))
+}
+
+fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) -> Part {
+    Part {
+        shape: Arc::new(shape),
+        material: lambert(reflectance),
+        emission: radiance.map(|l| Arc::new(Emission::diffuse(vec![l]))),
+    }
+}
+
+fn scene(parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Scene {
+    Scene::new(band(), parts, lights)
+}
+
+fn at(position: DVec3, axis: DVec3) -> Place {
+    Place::Point(SurfacePoint::meter(position, axis, 0.0))
+}
+
+/// What a meter reads, run until its standard error is small enough.
+fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
+    let settings = Settings::new(seed, photopic::render::integrator::path::Limits::default(), 1);
+    let meter = Meter { place, response: Response::Planar };
+    let mut board = Board::new(scene, &settings, Share::WHOLE, vec![(0, meter)]);
+    let target = Target { relative: PRECISION, meters: vec![0], weights: vec![1.0] };
+    assert!(board.sample_to(&target, 1 << 20, |_, _| ()), "{:?}", board.estimate(0).figure(&[1.0]));
+    assert_eq!(board.estimate(0).faults().count(), 0, "no faulty samples");
+    board.estimate(0).figure(&[1.0])
+}
+
+/// Three standard errors; a figure without scatter is right to rounding.
+fn agrees(figure: Figure, expected: f64, name: &str) {
+    let allowed = (3.0 * figure.standard_error).max(1e-12 * expected.abs());
+    assert!((figure.value - expected).abs() <= allowed, "{name}: {figure:?}, expected {expected}");
+}
+
+#[test]
+fn a_point_source() {
+    let Some(cases) = cases() else { return };
+    let lamp = Point::new(DVec3::new(0.0, 0.0, 2.0), &[1000.0]).expect("a lamp");
+    let scene = scene(Vec::new(), vec![Arc::new(lamp)]);
+    for r in [0.0, 1.0, 3.0] {
+        let figure = read(&scene, at(DVec3::new(r, 0.0, 0.0), DVec3::Z), 1);
+        agrees(figure, value(&cases, &format!("point_I1000_h2_r{r}")), "point");
+    }
+}
+
+#[test]
+fn a_disk_a_rectangle_and_a_sphere() {
+    let Some(cases) = cases() else { return };
+    let disk = Disk::new(DVec3::new(0.0, 0.0, 1.0), DVec3::NEG_Z, 0.5).expect("a disk");
+    let disk = scene(vec![part(disk, 0.0, Some(1000.0))], Vec::new());
+    for d in [0.0, 0.5, 1.0, 3.0] {
+        let figure = read(&disk, at(DVec3::new(d, 0.0, 0.0), DVec3::Z), 2);
+        agrees(figure, value(&cases, &format!("disk_L1000_R0.5_h1_d{d}")), "disk");
+    }
+    let square = Rectangle::new(DVec3::new(0.0, 0.0, 1.0), DVec3::Y, DVec3::X).expect("a square");
+    let square = scene(vec![part(square, 0.0, Some(1.0))], Vec::new());
+    let corner = read(&square, at(DVec3::ZERO, DVec3::Z), 3);
+    agrees(corner, value(&cases, "rect_corner_1x1_h1_E_over_L"), "corner");
+    let centre = read(&square, at(DVec3::new(0.5, 0.5, 0.0), DVec3::Z), 3);
+    agrees(centre, value(&cases, "rect_centre_1x1_h1_E_over_L"), "centre");
+    let ball = Sphere::new(DVec3::new(0.0, 0.0, 2.0), 0.5).expect("a ball");
+    let ball = scene(vec![part(ball, 0.0, Some(1000.0))], Vec::new());
+    agrees(read(&ball, at(DVec3::ZERO, DVec3::Z), 4), value(&cases, "sphere_R0.5_D2_L1000"), "ball");
+}
+
+/// A lamp in the middle of a white sphere: the wall receives Φ/(A (1 − ρ)). No path is cut, whatever ρ.
+#[test]
+fn an_integrating_sphere() {
+    let Some(cases) = cases() else { return };
+    for (rho, name) in [(0.5, "0.5"), (0.9, "0.9"), (0.98, "0.98")] {
+        let wall = Sphere::new(DVec3::ZERO, 0.5).expect("a sphere");
+        let lamp = Point::new(DVec3::ZERO, &[1000.0 / (4.0 * std::f64::consts::PI)]).expect("a lamp");
+        let scene = scene(vec![part(wall, rho, None)], vec![Arc::new(lamp)]);
+        let place = Place::Point(SurfacePoint::meter(DVec3::new(0.5, 0.0, 0.0), DVec3::NEG_X, 1e-12));
+        let figure = read(&scene, place, 5);
+        let expected = cases[format!("int_sphere_r0.5_1000lm_rho{name}")]["value"][1].as_f64().expect("a number");
+        agrees(figure, expected, "integrating sphere");
+    }
+}
+
+/// The mean over the walls of a closed cube of edge 4 m with a lamp of 10 000 lm in its middle.
+#[test]
+fn a_closed_cube() {
+    let Some(cases) = cases() else { return };
+    let expected = cases["int_cube_4m_10000lm"]["value"].as_array().expect("numbers");
+    for (rho, expected) in [0.0, 0.2, 0.5, 0.8].into_iter().zip(expected) {
+        let face = |n: usize| {
+            let axis = DVec3::AXES[n % 3] * if n < 3 { 1.0 } else { -1.0 };
+            let (s, t) = (DVec3::AXES[(n + 1) % 3] * 4.0, DVec3::AXES[(n + 2) % 3] * 4.0);
+            let corner = 2.0 * axis - 0.5 * (s + t);
+            // Normals look inwards.
+            if n < 3 { Rectangle::new(corner, t, s) } else { Rectangle::new(corner, s, t) }.expect("a face")
+        };
+        let lamp = Point::new(DVec3::ZERO, &[10_000.0 / (4.0 * std::f64::consts::PI)]).expect("a lamp");
+        let scene = scene((0..6).map(|n| part(face(n), rho, None)).collect(), vec![Arc::new(lamp)]);
+        let figure = read(&scene, Place::Area(Arc::new(face(4))), 6);
+        agrees(figure, expected.as_f64().expect("a number"), "cube");
+    }
+}
+
+/// L = L_e/(1 − ρ) inside a closed surface that emits L_e and reflects ρ everywhere.
+#[test]
+fn a_glowing_enclosure() {
+    let Some(cases) = cases() else { return };
+    let expected = cases["enclosure_L_over_Le"]["value"].as_array().expect("numbers");
+    for (rho, expected) in [0.5, 0.9, 0.99].into_iter().zip(expected) {
+        let wall = Sphere::new(DVec3::ZERO, 2.0).expect("a sphere");
+        let mut part = part(wall, rho, None);
+        part.emission = Some(Arc::new(Emission::new(vec![1.0], 0.0, true)));
+        let scene = scene(vec![part], Vec::new());
+        let figure = read(&scene, at(DVec3::new(0.3, -0.5, 0.7), DVec3::Z), 8);
+        let expected = expected.as_f64().expect("a number") * std::f64::consts::PI;
+        agrees(figure, expected, "enclosure");
+    }
+}
