@@ -13,6 +13,9 @@ use photopic::luminaire::grid::{
 use photopic::luminaire::luminance::projected_area_m2;
 use photopic::luminaire::placement::{Orientation, Placement};
 use photopic::luminaire::{Body, Distribution, Kind, Luminaire, Shape, Symmetry, System};
+use photopic::math::random::Stream;
+use photopic::render::light::Light;
+use photopic::render::light::goniometric::Goniometric;
 use proptest::prelude::*;
 
 fn lamp(distribution: Distribution, opening: Option<Body>) -> Luminaire {
@@ -489,6 +492,48 @@ fn all_light_of_real_lamps_leaves_a_closed_box() {
             source.distribution.total_flux()
         );
     }
+}
+
+/// The luminaires of the renderer: a real file turned about all axes lights points as the grid says, and sends out its flux.
+#[test]
+fn real_lamps_light_a_rendered_scene_as_they_light_a_grid() {
+    let (Some(folder), Some(index)) = (common::shared("luminaires/files"), common::shared("luminaires/index.csv"))
+    else {
+        return;
+    };
+    let o = Orientation::Angles { rotation_deg: 40.0, tilt_deg: 35.0, towards_c_deg: 60.0, spin_deg: -20.0 };
+    let placement = at(DVec3::new(0.2, 0.1, 2.0), o);
+    let sides = [DVec3::new(6.0, 0.0, 0.0), DVec3::new(0.0, 5.0, 0.0)];
+    let plane = Plane::new(DVec3::new(-3.0, -2.5, 0.0), sides, [6, 5], PointsAt::Centres).expect("a plane");
+    let as_points = Settings { near_ratio: 0.0, ..Settings::default() };
+    let mut compared = 0;
+    for row in &common::rows(&index) {
+        let bytes = std::fs::read(folder.join(&row["file"])).expect("the file opens");
+        let Ok(read) = format::open(&bytes, &ReadOptions::default()) else { continue };
+        let source = read.value.luminaire;
+        // Negative intensities are refused by the light.
+        let Ok(light) = Goniometric::new(source.distribution.clone(), &placement, &[1.0]) else { continue };
+        let placed = [Placed { luminaire: &source, placement }];
+        let grid = illuminance(&placed, &plane, &UP, &as_points).expect("a grid");
+        for (i, expected) in grid.values.iter().enumerate() {
+            let mut arriving = [0.0];
+            let towards = light.sample_towards(plane.point_m(i), [0.5; 3], &mut arriving);
+            let got = towards.map_or(0.0, |t| arriving[0] * t.direction.z);
+            assert!((got - expected).abs() <= 1e-12 * expected, "{}: {got} instead of {expected}", row["file"]);
+        }
+        let (mut stream, mut flux, n) = (Stream::new(6, compared), [0.0], 3000);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for _ in 0..n {
+            let drawn = light.emit(stream.uniforms(), &mut flux).map_or(0.0, |_| flux[0]);
+            (sum, squares) = (sum + drawn, squares + drawn * drawn);
+        }
+        let (mean, whole) = (sum / f64::from(n), source.distribution.total_flux());
+        // 4.5 standard errors: 7e-6 for one lamp, 1e-3 for all.
+        let error = ((squares / f64::from(n) - mean * mean).max(0.0) / f64::from(n)).sqrt();
+        assert!((mean - whole).abs() <= 4.5 * error + 1e-9 * whole, "{}: {mean} ± {error}, {whole}", row["file"]);
+        compared += 1;
+    }
+    assert!(compared > 100, "{compared}");
 }
 
 // ------------------------------------------------------------------------------------------------ odd places

@@ -247,7 +247,8 @@ impl Barzel {
         }
     }
 
-    /// The flux: over the window where there is a shape or a slide, else over the half space, by adaptive quadrature to 1e-6.
+    /// The flux: over the window where there is a shape or a slide, else over the half space, by adaptive quadrature to
+    /// 1e-6, or by half a million points where hard edges do not let it.
     fn integrate(&self) -> Box<[f64]> {
         let slide = self.controls.slide.as_ref();
         let channels = slide.map_or(1, |s| s.spectra.len());

@@ -62,8 +62,11 @@ impl Cells {
 fn draw(cumulated: &[f64], u: f64) -> Option<(usize, f64, f64)> {
     let total = *cumulated.last()?;
     let x = u * total;
-    // Empty intervals are never found: their end is not above their start.
-    let index = cumulated.partition_point(|end| *end <= x).min(cumulated.partition_point(|end| *end < total));
+    // Empty intervals are never found: their end is not above their start. At u = 1 the last that is not empty is.
+    let mut index = cumulated.partition_point(|end| *end <= x);
+    if index == cumulated.len() {
+        index = cumulated.partition_point(|end| *end < total);
+    }
     let (start, width) = interval(cumulated, index);
     (total > 0.0).then(|| (index, ((x - start) / width).clamp(0.0, 1.0), width / total))
 }

@@ -1,114 +1,92 @@
-//! Choosing one of many lights.
+//! Choosing one of many lights for a point that is to be lit.
 //!
-//! For up to [`FEW`] lights the probability is in proportion to [`Light::importance`] at the point that is lit, asked of each; for more
-//! of them in proportion to a fixed table, their importance at a place that stands for the scene, whatever the point. Every light has at
-//! least a hundredth of its even share in the table, so that none is lost that matters elsewhere. The probabilities sum to 1, and the
-//! estimate (what arrives)/(pmf · pdf) is unbiased by any of them.
+//! Up to [`FEW`] lights are weighed anew for every point, in proportion to [`Light::importance`] there. More of them keep one table, of
+//! their importance at a place that stands for the scene, in which every light has at least a hundredth of its even share, so that none
+//! is lost that matters elsewhere. Either way the probabilities are those of the draws and sum to 1.
 //!
-//! Where no light is of importance at a point, none is chosen.
+//! Where no light is of importance, none is chosen.
+
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::Light;
 
-/// Most lights that are asked one by one.
-pub const FEW: usize = 16;
-/// Share of the fixed table that is even among the lights.
+/// Most lights that are weighed for every point.
+pub const FEW: usize = 64;
+/// Share of the table of many that is even among the lights.
 const EVEN: f64 = 0.01;
 /// An importance counts for at most so much (a point light at the point itself is of infinite one).
 const MOST: f64 = 1e200;
 
-/// How the lights of a scene are chosen among. It does not hold them: the same lights, in the same order, come with every call.
+/// The lights' shares of the choice. It does not hold the lights: the same, in the same order, come with every call.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
-    count: usize,
-    /// For many lights: their probabilities cumulated, the last 1.
-    cumulated: Vec<f64>,
+    /// Running sums of the weights.
+    sums: Vec<f64>,
+    /// One table for all points.
+    fixed: bool,
 }
 
 impl Choice {
-    /// Among some lights of a scene around a place.
+    /// Among some lights, weighed for a place that stands for the scene.
     #[must_use]
-    pub fn new(lights: &[&dyn Light], scene_centre: DVec3) -> Self {
-        let count = lights.len();
-        if count <= FEW {
-            return Self { count, cumulated: Vec::new() };
-        }
-        let weights: Vec<f64> = lights.iter().map(|light| weight(*light, scene_centre)).collect();
-        let total: f64 = weights.iter().sum();
-        let even = 1.0 / count as f64;
-        let mut sum = 0.0;
-        let mut cumulated: Vec<f64> = (weights.iter())
-            .map(|w| {
-                sum += if total > 0.0 { EVEN * even + (1.0 - EVEN) * w / total } else { even };
-                sum
-            })
-            .collect();
-        cumulated.iter_mut().for_each(|c| *c /= sum);
-        Self { count, cumulated }
-    }
-
-    /// The light for a uniform number at a point, its probability, and the number stretched to [0, 1) again; `None` where no light is of
-    /// importance.
-    #[must_use]
-    pub fn choose(&self, lights: &[&dyn Light], from: DVec3, u: f64) -> Option<(usize, f64, f64)> {
-        debug_assert_eq!(lights.len(), self.count, "the lights that the choice was made for");
-        if self.count > FEW {
-            let index = self.cumulated.partition_point(|end| *end <= u).min(self.count - 1);
-            let (start, share) = self.interval(index);
-            return Some((index, share, stretched((u - start) / share)));
-        }
-        let weights = few(lights, from);
-        let total: f64 = weights.iter().sum();
-        let (mut left, mut last) = (u * total, None);
-        for (index, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
-            if left < weight {
-                return Some((index, weight / total, stretched(left / weight)));
+    pub fn new(lights: &[Arc<dyn Light>], scene_centre: DVec3) -> Self {
+        let mut choice = Self { sums: Vec::with_capacity(lights.len()), fixed: false };
+        choice.prepare(lights, scene_centre);
+        choice.fixed = lights.len() > FEW;
+        if let (true, Some(total)) = (choice.fixed, choice.sums.last().copied()) {
+            let even = 1.0 / lights.len() as f64;
+            let share = |sum: f64| if total > 0.0 { sum / total } else { 0.0 };
+            for (i, sum) in choice.sums.iter_mut().enumerate() {
+                *sum = EVEN * even * (i + 1) as f64 + (1.0 - EVEN) * share(*sum);
             }
-            left -= weight;
-            last = Some((index, weight / total, stretched(1.0)));
         }
-        // Rounding has left something over: it is the last light's.
-        last
+        choice
     }
 
-    /// The probability with which [`Choice::choose`] takes a light at a point.
+    /// Weighs the lights for a point; many stay as they are. Does not allocate.
+    pub fn prepare(&mut self, lights: &[Arc<dyn Light>], from: DVec3) {
+        if self.fixed {
+            return;
+        }
+        let mut sum = 0.0;
+        self.sums.clear();
+        self.sums.extend(lights.iter().map(|light| {
+            sum += light.importance(from).clamp(0.0, MOST);
+            sum
+        }));
+    }
+
+    /// A light drawn by one uniform number, with its probability and the number stretched to [0, 1) again; `None` where nothing shines.
+    #[must_use]
+    pub fn draw(&self, u: f64) -> Option<(usize, f64, f64)> {
+        let total = self.sums.last().copied().filter(|total| *total > 0.0)?;
+        let target = u * total;
+        // Lights of no weight are never found: their end is not above their start. At u = 1 the last of some weight is.
+        let mut index = self.sums.partition_point(|end| *end <= target);
+        if index == self.sums.len() {
+            index = self.sums.partition_point(|end| *end < total);
+        }
+        let (start, share) = self.interval(index);
+        Some((index, share / total, ((target - start) / share).clamp(0.0, 1.0 - f64::EPSILON / 2.0)))
+    }
+
+    /// The probability with which [`Choice::draw`] finds a light.
     ///
     /// # Panics
-    /// Where `index` is not that of a light.
+    /// Where `light` is not the index of one.
     #[must_use]
-    pub fn pmf(&self, lights: &[&dyn Light], from: DVec3, index: usize) -> f64 {
-        debug_assert_eq!(lights.len(), self.count, "the lights that the choice was made for");
-        if self.count > FEW {
-            return self.interval(index).1;
-        }
-        let weights = few(lights, from);
-        let total: f64 = weights.iter().sum();
-        if total > 0.0 { weights[index] / total } else { 0.0 }
+    pub fn probability(&self, light: usize) -> f64 {
+        let total = self.sums[self.sums.len() - 1];
+        if total > 0.0 { self.interval(light).1 / total } else { 0.0 }
     }
 
-    /// Start and length of a light's part of [0, 1].
+    /// Start and length of a light's part of the sums.
     fn interval(&self, index: usize) -> (f64, f64) {
-        let start = if index == 0 { 0.0 } else { self.cumulated[index - 1] };
-        (start, self.cumulated[index] - start)
+        let start = if index == 0 { 0.0 } else { self.sums[index - 1] };
+        (start, self.sums[index] - start)
     }
-}
-
-fn few(lights: &[&dyn Light], from: DVec3) -> [f64; FEW] {
-    let mut weights = [0.0; FEW];
-    for (weight, light) in weights.iter_mut().zip(lights) {
-        *weight = self::weight(*light, from);
-    }
-    weights
-}
-
-fn weight(light: &dyn Light, from: DVec3) -> f64 {
-    light.importance(from).clamp(0.0, MOST)
-}
-
-/// A number of [0, 1) again, whatever was rounded.
-fn stretched(u: f64) -> f64 {
-    u.clamp(0.0, 1.0 - f64::EPSILON / 2.0)
 }
 
 #[cfg(test)]
@@ -117,36 +95,30 @@ mod tests {
     use super::super::spot::{Profile, Spot};
     use super::*;
 
-    fn points(count: i32) -> Vec<Point> {
-        (0..count)
-            .map(|i| Point::new(DVec3::new(f64::from(i), 0.0, 1.0), &[f64::from(1 + i % 5)]).expect("a light"))
-            .collect()
-    }
-
-    fn shares(lights: &[&dyn Light], from: DVec3) {
-        let choice = Choice::new(lights, DVec3::ZERO);
-        let n = 20_000;
-        let mut counts = vec![0.0; lights.len()];
-        for i in 0..n {
-            let u = (f64::from(i) + 0.5) / f64::from(n);
-            let (index, pmf, again) = choice.choose(lights, from, u).expect("a light");
-            assert!((pmf - choice.pmf(lights, from, index)).abs() < 1e-15 && (0.0..1.0).contains(&again));
-            counts[index] += 1.0;
-        }
-        let pmf = |index| choice.pmf(lights, from, index);
-        for (index, count) in counts.iter().enumerate() {
-            // An even net puts as many points into an interval as it is long, give or take one.
-            assert!((count - f64::from(n) * pmf(index)).abs() <= 1.0 + 1e-9, "{index}: {count} {}", pmf(index));
-        }
-        assert!(((0..lights.len()).map(pmf).sum::<f64>() - 1.0).abs() < 1e-12);
+    fn points(count: i32) -> Vec<Arc<dyn Light>> {
+        let point = |i| Point::new(DVec3::new(f64::from(i), 0.0, 1.0), &[f64::from(1 + i % 5)]).expect("a light");
+        (0..count).map(|i| Arc::new(point(i)) as Arc<dyn Light>).collect()
     }
 
     #[test]
     fn lights_are_chosen_as_often_as_said() {
-        for count in [1, 2, 16, 17, 100] {
+        for count in [1, 2, 64, 65, 200] {
             let lights = points(count);
-            let lights: Vec<&dyn Light> = lights.iter().map(|l| l as &dyn Light).collect();
-            shares(&lights, DVec3::new(3.0, 1.0, 0.0));
+            let mut choice = Choice::new(&lights, DVec3::ZERO);
+            choice.prepare(&lights, DVec3::new(3.0, 1.0, 0.0));
+            let n = 20_000;
+            let mut counts = vec![0.0; lights.len()];
+            for i in 0..n {
+                let (index, probability, again) = choice.draw((f64::from(i) + 0.5) / f64::from(n)).expect("a light");
+                assert!(probability == choice.probability(index) && (0.0..1.0).contains(&again));
+                counts[index] += 1.0;
+            }
+            let probability = |index| choice.probability(index);
+            for (index, drawn) in counts.iter().enumerate() {
+                // An even net puts as many points into an interval as it is long, give or take one.
+                assert!((drawn - f64::from(n) * probability(index)).abs() <= 1.0 + 1e-9, "{index}: {drawn}");
+            }
+            assert!(((0..lights.len()).map(probability).sum::<f64>() - 1.0).abs() < 1e-12);
         }
     }
 
@@ -156,26 +128,27 @@ mod tests {
         let near = Point::new(DVec3::X, &[1.0]).expect("a light");
         let far = Point::new(DVec3::new(0.0, 0.0, 2.0), &[4.0]).expect("a light");
         let away = Spot::new(DVec3::Y, DVec3::Y, Profile::Cosine, &[1e9]).expect("a light");
-        let lights: [&dyn Light; 3] = [&near, &far, &away];
-        let choice = Choice::new(&lights, DVec3::ZERO);
-        assert_eq!([0, 1, 2].map(|i| choice.pmf(&lights, DVec3::ZERO, i)), [0.5, 0.5, 0.0]);
-        assert_eq!(choice.choose(&lights, DVec3::ZERO, 0.75), Some((1, 0.5, 0.5)));
-        // At a light itself.
-        assert_eq!(choice.choose(&lights, DVec3::X, 0.5).map(|c| c.0), Some(0));
-        assert!(choice.pmf(&lights, DVec3::X, 0) <= 1.0);
+        let lights: [Arc<dyn Light>; 3] = [Arc::new(near), Arc::new(far), Arc::new(away)];
+        let mut choice = Choice::new(&lights, DVec3::ZERO);
+        assert_eq!([0, 1, 2].map(|i| choice.probability(i)), [0.5, 0.5, 0.0]);
+        assert_eq!(choice.draw(0.75), Some((1, 0.5, 0.5)));
+        assert_eq!(choice.draw(1.0).map(|c| c.0), Some(1));
+        // At a light itself its importance is infinite, its probability is not.
+        choice.prepare(&lights, DVec3::X);
+        assert_eq!(choice.draw(0.5).map(|c| c.0), Some(0));
+        assert!(choice.probability(0) <= 1.0);
         // Where nothing shines nothing is chosen, and so with no lights.
-        let dark: [&dyn Light; 1] = [&away];
-        assert_eq!(Choice::new(&dark, DVec3::ZERO).choose(&dark, DVec3::ZERO, 0.5), None);
-        assert_eq!(Choice::new(&[], DVec3::ZERO).choose(&[], DVec3::ZERO, 0.5), None);
+        let dark = Choice::new(&lights[2..], DVec3::ZERO);
+        assert_eq!((dark.draw(0.5), dark.probability(0)), (None, 0.0));
+        assert_eq!(Choice::new(&[], DVec3::ZERO).draw(0.5), None);
     }
 
     #[test]
     fn no_light_of_many_is_lost() {
-        let mut lights = points(39);
-        lights.push(Point::new(DVec3::splat(1e8), &[1e-9]).expect("a light"));
-        let lights: Vec<&dyn Light> = lights.iter().map(|l| l as &dyn Light).collect();
+        let mut lights = points(79);
+        lights.push(Arc::new(Point::new(DVec3::splat(1e8), &[1e-9]).expect("a light")));
         let choice = Choice::new(&lights, DVec3::ZERO);
-        let least = (0..40).map(|i| choice.pmf(&lights, DVec3::ZERO, i)).fold(f64::INFINITY, f64::min);
-        assert!((least - 0.01 / 40.0).abs() < 1e-9, "{least}");
+        let least = (0..80).map(|i| choice.probability(i)).fold(f64::INFINITY, f64::min);
+        assert!((least - 0.01 / 80.0).abs() < 1e-9, "{least}");
     }
 }

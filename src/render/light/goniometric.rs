@@ -144,20 +144,13 @@ impl Goniometric {
             };
             spectra.weighted(&weights).map(|table| table.scaled(placement.dimming()))
         };
+        let beyond = |_| Error::Value { what: "a spectral intensity", found: f64::INFINITY, expected: "finite sums" };
         let tables: Vec<Distribution> = (bands.wavelengths_nm().iter().zip(bands.widths()))
             .map(|(wavelength_nm, width)| band(*wavelength_nm, width))
             .collect::<Result<_, _>>()
-            .map_err(|_| Error::Value {
-                what: "a spectral intensity",
-                found: f64::INFINITY,
-                expected: "finite sums",
-            })?;
+            .map_err(beyond)?;
         let sums = (0..spectra.directions()).map(|i| tables.iter().map(|t| t.values()[i]).sum()).collect();
-        let table = spectra.frame().with_values(sums).map_err(|_| Error::Value {
-            what: "a spectral intensity",
-            found: f64::INFINITY,
-            expected: "finite sums",
-        })?;
+        let table = spectra.frame().with_values(sums).map_err(beyond)?;
         let flux = tables.iter().map(Distribution::total_flux).collect();
         Self::build(table, placement, Spectra::PerBand(tables), flux)
     }
@@ -553,6 +546,21 @@ mod tests {
         check::emission(&by_direction, 2);
         assert_eq!(between(&[500.0, 600.0], 499.0), [0.0, 0.0]);
         assert_eq!(between(&[500.0, 600.0], 600.0), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn the_square_law_holds_from_1e_8_to_1e8_metres() {
+        let direction = DVec3::new(0.48, -0.6, -0.64);
+        let table = tables().swap_remove(0);
+        let place = Placement::new(DVec3::ZERO, Orientation::DOWN, 1.0).expect("a placement");
+        let light = Goniometric::new(table.clone(), &place, &[1.0]).expect("a light");
+        for exponent in -8..=8 {
+            let r = 10.0_f64.powi(exponent);
+            let e = check::irradiance_at(&light, r * direction, -direction)[0] * r * r;
+            assert!((e / table.towards(direction) - 1.0).abs() < 1e-13, "{r}: {e}");
+            assert!(light.importance(r * direction).is_finite());
+        }
+        assert_eq!(light.sample_towards(DVec3::ZERO, [0.5; 3], &mut [0.0]), None);
     }
 
     #[test]
