@@ -59,9 +59,8 @@ impl Surfaces {
     /// Whether anything but the surface `ignore` is crossed at a distance in (0, `far`).
     #[must_use]
     pub fn is_occluded(&self, ray: &Ray, far: f64, ignore: Option<usize>) -> bool {
-        let hides = |number: u32| {
-            Some(number as usize) != ignore && self.shapes[number as usize].is_crossed(ray, 0.0, far)
-        };
+        let hides =
+            |number: u32| Some(number as usize) != ignore && self.shapes[number as usize].is_crossed(ray, 0.0, far);
         self.unbounded.iter().any(|&number| hides(number))
             || self.tree.any(ray.origin, ray.direction, far, |place| hides(self.bounded[place]))
     }

@@ -103,14 +103,12 @@ impl Tree {
         for part in &self.parts {
             let mut ray = local.ray;
             ray.tmax = local.parameter(best);
-            part.bvh.ray_traverse(ray, &mut RayHit::none(), |_, leaf| {
-                match test(part.number(leaf), best) {
-                    Some(t) => {
-                        best = t;
-                        local.parameter(t)
-                    }
-                    None => f32::INFINITY,
+            part.bvh.ray_traverse(ray, &mut RayHit::none(), |_, leaf| match test(part.number(leaf), best) {
+                Some(t) => {
+                    best = t;
+                    local.parameter(t)
                 }
+                None => f32::INFINITY,
             });
         }
         best
@@ -258,10 +256,8 @@ mod tests {
         for (scale, shift) in [(1.0, 0.0), (1e-8, 0.0), (1e8, 0.0), (1.0, 1e6), (1e-3, -4e5)] {
             let mut random = Stream::new(3, 1);
             let at = |p: DVec3| p * scale + shift;
-            let boxes: Vec<Bounds> = boxes(&mut random, 500, 0.02)
-                .into_iter()
-                .map(|b| Bounds { min: at(b.min), max: at(b.max) })
-                .collect();
+            let boxes: Vec<Bounds> =
+                boxes(&mut random, 500, 0.02).into_iter().map(|b| Bounds { min: at(b.min), max: at(b.max) }).collect();
             let tree = Tree::new(&boxes);
             for n in 0..300 {
                 let [x, y, z, a, b, c] = random.uniforms();
@@ -299,7 +295,9 @@ mod tests {
                 slabs(&boxes[i], from, direction).map(|s| s.0).filter(|t| *t < best)
             });
             assert_eq!(found, expected);
-            let hit = |far: f64| tree.any(from, direction, far, |i| slabs(&boxes[i], from, direction).is_some_and(|s| s.0 < far));
+            let hit = |far: f64| {
+                tree.any(from, direction, far, |i| slabs(&boxes[i], from, direction).is_some_and(|s| s.0 < far))
+            };
             assert_eq!(hit(9.0), expected < 9.0);
             assert!(!hit(expected * (1.0 - 1e-12)));
         }
