@@ -14,6 +14,7 @@
 //! | [`bands`] | the wavelengths that a render carries |
 //! | [`ray`] | rays, crossings, surface points |
 //! | [`shape`] | closed-form shapes and meshes: crossing, area, sampling |
+//! | [`form_factor`] | form factors in closed form |
 //! | [`light`] | what lights the scene and is no shape: points, spots, luminaires, skies, pictures |
 //! | [`material`] | scattering at a surface, reflection and transmission |
 //! | [`emission`] | what a surface emits |
@@ -32,6 +33,7 @@ pub mod description;
 pub mod emission;
 pub mod estimate;
 pub mod film;
+pub mod form_factor;
 pub mod integrator;
 pub mod light;
 pub mod material;

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use photopic::render::form_factor;
 use photopic::render::shape::Shape;
 use photopic::render::shape::disk::Disk;
 use photopic::render::shape::polygon::Polygon;
@@ -92,4 +93,21 @@ fn what_covers_everything_is_pi() {
     let faces = [wall(1.0, x, y, z), wall(1.0, y, z, x), wall(1.0, y, z, -x), wall(1.0, x, z, y), wall(1.0, x, z, -y)];
     let sum: f64 = faces.iter().map(|f| f.projected_solid_angle(eye, z).expect("a closed form")).sum();
     assert!((sum - PI).abs() < 1e-14, "{sum}");
+}
+
+#[test]
+fn form_factors_of_the_catalogue() {
+    let Some(path) = shared("render/analytic.json") else { return };
+    let cases: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("readable")).expect("JSON");
+    let number = |name: &str| cases[name]["value"].as_f64().expect("a number");
+    for (got, name) in [
+        (form_factor::parallel_rectangles(1.0, 1.0, 1.0), "F12_unit_squares_parallel_d1"),
+        (form_factor::adjacent_rectangles(1.0, 1.0, 1.0), "F12_cube_adjacent"),
+        (form_factor::coaxial_disks(1.0, 1.0, 1.0), "F12_coaxial_disks_r1_d1"),
+    ] {
+        assert!((got / number(name) - 1.0).abs() < 1e-14, "{name}: {got}");
+    }
+    let expected: Vec<f64> =
+        serde_json::from_value(cases["concentric_spheres_r1=.5_r2=1"]["value"].clone()).expect("numbers");
+    assert_eq!(form_factor::concentric_spheres(0.5, 1.0).as_slice(), expected);
 }

@@ -41,6 +41,10 @@ impl Light for AreaLight {
         let ray = Ray { origin: from, direction: towards.direction };
         // The point that was drawn lies within rounding of the crossing found here, which gives the normal it is seen under.
         let crossing = self.shape.cross(&ray, 0.0, f64::INFINITY)?;
+        // A shape may hide the point that was drawn behind another part of itself.
+        if crossing.t < towards.distance * (1.0 - 1e-6) {
+            return None;
+        }
         let point = self.shape.surface(&ray, &crossing);
         let profile = self.emission.profile(-point.normal.dot(towards.direction));
         if profile == 0.0 {
@@ -87,5 +91,38 @@ impl Light for AreaLight {
         // Solid angle of a shape of area A, bounded by the hemisphere that it can fill.
         let squared = from.distance_squared(nearest).max(reach).max(f64::MIN_POSITIVE);
         self.brightness * (self.shape.area() / squared).min(std::f64::consts::TAU)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+    use crate::render::shape::cylinder::Cylinder;
+
+    /// The irradiance by draws is that by rays counted over the sphere, also where the near side of a tube hides the far one.
+    #[test]
+    fn a_shape_that_hides_itself_is_not_counted_twice() {
+        let tube = Cylinder::new(DVec3::ZERO, DVec3::new(0.5, 0.2, 0.8), 0.4, false).expect("a tube");
+        let light = AreaLight::new(Arc::new(tube), Arc::new(Emission::new(vec![1.0], 0.0, true)));
+        let (from, normal) = (DVec3::new(-1.0, 0.3, -0.9), DVec3::new(0.6, 0.0, 0.8));
+        let (mut stream, draws) = (Stream::new(1, 1), 200_000);
+        let mut sums = [[0.0; 2]; 2];
+        for _ in 0..draws {
+            let mut arriving = [0.0];
+            let drawn = light.sample_towards(from, stream.uniforms(), &mut arriving);
+            let aimed = drawn.map_or(0.0, |t| arriving[0] * normal.dot(t.direction).max(0.0) / t.pdf);
+            let direction = sampling::cosine_hemisphere(stream.uniforms());
+            let (t, b) = direction::tangents(normal);
+            let ray = Ray { origin: from, direction: direction.x * t + direction.y * b + direction.z * normal };
+            let counted = light.shape().cross(&ray, 0.0, f64::INFINITY).map_or(0.0, |_| std::f64::consts::PI);
+            for (sum, x) in sums.iter_mut().zip([aimed, counted]) {
+                *sum = [sum[0] + x, sum[1] + x * x];
+            }
+        }
+        let n = f64::from(draws);
+        let [(aimed, a), (counted, c)] = sums.map(|[s, q]| (s / n, (q / n - (s / n).powi(2)) / n));
+        // 4.5 standard errors of the difference.
+        assert!((aimed - counted).abs() < 4.5 * (a + c).sqrt(), "{aimed} {counted} {}", (a + c).sqrt());
     }
 }

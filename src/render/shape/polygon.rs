@@ -50,6 +50,9 @@ impl Face {
         let along = corners[1] - corners[0];
         let tangent = (along - along.dot(facet.normal) * facet.normal).normalize();
         let triangles = outline::triangulate(corners, &facet);
+        if triangles.is_empty() {
+            return Err(ShapeError::NoArea { what: "polygon" });
+        }
         let patch = |t: [usize; 3]| Patch { corners: t.map(|i| corners[i]), face: index };
         Ok((Self { facet, tangent }, triangles.into_iter().map(patch).collect()))
     }

@@ -108,7 +108,9 @@ impl Shape for Sphere {
     }
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
-        self.point((ray.origin - self.centre + crossing.t * ray.direction).normalize())
+        let outwards = ray.origin - self.centre + crossing.t * ray.direction;
+        // A sphere so small for its distance that the crossing is its centre to the last digit faces the ray.
+        self.point(outwards.try_normalize().unwrap_or(-ray.direction))
     }
 
     fn area(&self) -> f64 {

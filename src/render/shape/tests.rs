@@ -383,7 +383,7 @@ fn leavable(scale: f64, shift: DVec3) -> Vec<(&'static str, Box<dyn Shape>, bool
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(if cfg!(debug_assertions) { 400 } else { 4000 }))]
+    #![proptest_config(ProptestConfig::with_cases(if cfg!(debug_assertions) { 500 } else { 5000 }))]
 
     /// A ray from `origin_towards` does not meet the flat surface that it leaves, nor from outside the convex one, however it got there:
     /// by a crossing or a draw, at any scale, at any slant.
@@ -447,6 +447,59 @@ proptest! {
             // x + y + z = scale on the plane; the sum of three rounds twice.
             let off = (point.position.element_sum() - scale).abs() / 3.0_f64.sqrt();
             prop_assert!(off <= point.error + 2.0 * f64::EPSILON * scale, "{off} {}", point.error);
+        }
+    }
+
+    /// Needles, specks and giants, seen from anywhere: a shape is refused or gives finite figures in their range, never NaN.
+    #[test]
+    fn odd_measures_give_finite_figures_or_an_error(
+        sizes in prop::array::uniform3(-40.0..40.0_f64),
+        thin in 0.0..20.0_f64,
+        places in prop::array::uniform8(0.0..1.0_f64),
+        u in prop::array::uniform3(0.0..1.0_f64),
+        leave in prop::array::uniform2(0.0..1.0_f64),
+    ) {
+        let [one, two, three] = sizes.map(|e| 10.0_f64.powf(e));
+        let direction = |i: usize| anywhere([places[2 * i], places[2 * i + 1]]);
+        let (a, b) = (direction(0), one * direction(1));
+        // Now and then all but along the first edge.
+        let c = two * (b.normalize() + 10.0_f64.powf(-thin) * direction(2));
+        let from = three * direction(3);
+        let made: [Result<Box<dyn Shape>, super::error::ShapeError>; 8] = [
+            Triangle::new(a, a + b, a + c).map(|s| Box::new(s) as Box<dyn Shape>),
+            Rectangle::new(a, b, c).map(|s| Box::new(s) as Box<dyn Shape>),
+            Polygon::new(vec![a, a + b, a + b + c, a + c]).map(|s| Box::new(s) as Box<dyn Shape>),
+            Disk::annulus(b, c, two, two * u[0]).map(|s| Box::new(s) as Box<dyn Shape>),
+            Sphere::new(b, two).map(|s| Box::new(s) as Box<dyn Shape>),
+            Cylinder::new(b, b + c, one, u[0] < 0.5).map(|s| Box::new(s) as Box<dyn Shape>),
+            Polyhedron::cuboid(b, b + c).map(|s| Box::new(s) as Box<dyn Shape>),
+            Plane::new(b, c).map(|s| Box::new(s) as Box<dyn Shape>),
+        ];
+        for shape in made.into_iter().flatten() {
+            prop_assert!(shape.area() > 0.0, "{shape:?}");
+            for normal in [direction(0), -direction(3)] {
+                if let Some(omega) = shape.projected_solid_angle(from, normal) {
+                    prop_assert!((0.0..=std::f64::consts::PI * (1.0 + 1e-12)).contains(&omega), "{omega} {shape:?}");
+                }
+            }
+            let point = shape.sample_area(u);
+            prop_assert!(point.position.is_finite() && point.uv.is_finite() && point.error >= 0.0, "{point:?} {shape:?}");
+            prop_assert!((point.normal.length() - 1.0).abs() < 1e-14 && (point.tangent.length() - 1.0).abs() < 1e-14);
+            let mut directions = vec![anywhere(leave)];
+            if let Some(drawn) = shape.sample_towards(from, u) {
+                prop_assert!(drawn.pdf > 0.0 && drawn.pdf.is_finite() && drawn.distance > 0.0, "{drawn:?} {shape:?}");
+                prop_assert!((drawn.direction.length() - 1.0).abs() < 1e-14, "{drawn:?} {shape:?}");
+                directions.push(drawn.direction);
+            }
+            for direction in directions {
+                let ray = Ray { origin: from, direction };
+                if let Some(crossing) = shape.cross(&ray, 0.0, f64::INFINITY) {
+                    prop_assert!(crossing.t > 0.0 && crossing.t.is_finite());
+                    let point = shape.surface(&ray, &crossing);
+                    let pdf = shape.pdf_towards(from, &point);
+                    prop_assert!(point.position.is_finite() && pdf >= 0.0, "{pdf} {point:?} {shape:?}");
+                }
+            }
         }
     }
 }
