@@ -18,6 +18,7 @@
 //! | [`material`] | scattering at a surface, reflection and transmission |
 //! | [`emission`] | what a surface emits |
 //! | [`accelerate`] | all surfaces, and the search for the one that a ray meets |
+//! | [`mesh`], [`placed`] | meshes of triangles, and where they stand |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
@@ -33,9 +34,12 @@ pub mod integrator;
 pub mod light;
 pub mod material;
 pub mod measure;
+pub mod mesh;
+pub mod placed;
 pub mod ray;
 pub mod sampler;
 pub mod scene;
 pub mod sensor;
 pub mod shape;
 pub mod spool;
+mod tree;
