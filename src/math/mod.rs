@@ -5,6 +5,7 @@ pub mod contour;
 pub mod cubature;
 pub mod interpolate;
 pub mod least_squares;
+pub mod noise;
 pub mod order;
 pub mod random;
 pub mod sampling;

@@ -62,6 +62,7 @@ pub struct Mesh {
     /// Triangles are in the order of the tree.
     data: MeshData,
     skipped: usize,
+    bounds: Bounds,
     tree: Tree,
 }
 
@@ -95,11 +96,12 @@ impl Mesh {
             across.is_finite() && across != DVec3::ZERO
         });
         let skipped = given - data.triangles.len();
-        let mut tree = Tree::new(data.triangles.len(), |i| {
-            Bounds::of(data.triangles[i].map(|corner| data.positions[corner as usize]))
-        });
-        data.triangles = tree.take_order().into_iter().map(|i| data.triangles[i as usize]).collect();
-        Ok(Self { data, skipped, tree })
+        let of = |names: &[u32; 3]| Bounds::of(names.map(|corner| data.positions[corner as usize]));
+        let boxes: Vec<Bounds> = data.triangles.iter().map(of).collect();
+        let bounds = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
+        let mut tree = Tree::new(&boxes);
+        data.triangles = tree.renumber().into_iter().map(|i| data.triangles[i as usize]).collect();
+        Ok(Self { data, skipped, bounds, tree })
     }
 
     /// What it is made of; triangles in the mesh's own order.
@@ -117,7 +119,7 @@ impl Mesh {
     /// The box that holds it, m; empty for a mesh without triangles.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
-        self.tree.bounds()
+        self.bounds
     }
 
     /// The corners of a triangle, m.
@@ -132,15 +134,11 @@ impl Mesh {
     pub fn closest(&self, ray: &Ray, near: f64, far: f64) -> Option<Crossing> {
         let shear = Shear::new(ray);
         let mut found = None;
-        self.tree.search(ray, far, |triangle, far| {
+        self.tree.closest(ray.origin, ray.direction, far, |triangle, far| {
             let [a, b, c] = self.corners(triangle as u32);
-            match cross_sheared(&shear, a, b, c, near, far) {
-                Some(crossing) => {
-                    found = Some(Crossing { face: triangle as u32, ..crossing });
-                    crossing.t
-                }
-                None => far,
-            }
+            let crossing = cross_sheared(&shear, a, b, c, near, far)?;
+            found = Some(Crossing { face: triangle as u32, ..crossing });
+            Some(crossing.t)
         });
         found
     }
@@ -149,13 +147,10 @@ impl Mesh {
     #[must_use]
     pub fn is_crossed(&self, ray: &Ray, near: f64, far: f64) -> bool {
         let shear = Shear::new(ray);
-        let mut found = false;
-        self.tree.search(ray, far, |triangle, far| {
+        self.tree.any(ray.origin, ray.direction, far, |triangle| {
             let [a, b, c] = self.corners(triangle as u32);
-            found = cross_sheared(&shear, a, b, c, near, far).is_some();
-            if found { 0.0 } else { far }
-        });
-        found
+            cross_sheared(&shear, a, b, c, near, far).is_some()
+        })
     }
 
     /// Texture coordinates at the weights `uv` of a triangle's second and third corner; those weights where the mesh has none.

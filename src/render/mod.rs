@@ -17,8 +17,9 @@
 //! | [`light`] | what lights the scene and is no shape: points, spots, luminaires, skies, pictures |
 //! | [`material`] | scattering at a surface, reflection and transmission |
 //! | [`emission`] | what a surface emits |
-//! | [`accelerate`] | all surfaces, and the search for the one that a ray meets |
+//! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
 //! | [`mesh`], [`placed`] | meshes of triangles, and where they stand |
+//! | [`description`] | scenes in TOML |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
@@ -27,6 +28,7 @@
 
 pub mod accelerate;
 pub mod bands;
+pub mod description;
 pub mod emission;
 pub mod estimate;
 pub mod film;
@@ -42,4 +44,4 @@ pub mod scene;
 pub mod sensor;
 pub mod shape;
 pub mod spool;
-mod tree;
+pub mod tree;

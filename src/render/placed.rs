@@ -1,8 +1,8 @@
 //! A mesh placed in the world: a shape, which can be a light.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::mesh::Mesh;
 use super::ray::{Crossing, Ray, SurfacePoint};
@@ -12,22 +12,20 @@ use crate::geometry::direction::tangents;
 
 /// A transform with its inverse.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
+struct Placement {
     to_world: DAffine3,
     to_local: DAffine3,
 }
 
 impl Placement {
     /// `None` for a transform that cannot be undone in `f64`.
-    #[must_use]
-    pub fn new(to_world: DAffine3) -> Option<Self> {
+    fn new(to_world: DAffine3) -> Option<Self> {
         let to_local = to_world.inverse();
         (to_world.is_finite() && to_local.is_finite()).then_some(Self { to_world, to_local })
     }
 
     /// A ray of the world in the mesh's coordinates; distances along it stay what they are.
-    #[must_use]
-    pub fn ray(&self, ray: &Ray) -> Ray {
+    fn ray(&self, ray: &Ray) -> Ray {
         Ray {
             origin: self.to_local.transform_point3(ray.origin),
             direction: self.to_local.transform_vector3(ray.direction),
@@ -35,8 +33,7 @@ impl Placement {
     }
 
     /// The box in the world of a box in the mesh's coordinates.
-    #[must_use]
-    pub fn bounds(&self, local: Bounds) -> Bounds {
+    fn bounds(&self, local: Bounds) -> Bounds {
         if !local.is_finite() {
             return local;
         }
@@ -50,8 +47,7 @@ impl Placement {
     }
 
     /// The surface of a mesh at weights `uv` of a triangle's second and third corner.
-    #[must_use]
-    pub fn surface(&self, mesh: &Mesh, face: u32, uv: glam::DVec2) -> SurfacePoint {
+    fn surface(&self, mesh: &Mesh, face: u32, uv: DVec2) -> SurfacePoint {
         let [a, b, c] = mesh.corners(face);
         let (local, local_error) = triangle::point(a, b, c, uv);
         let position = self.to_world.transform_point3(local);
@@ -83,24 +79,28 @@ fn absolute(m: DMat3) -> DMat3 {
 pub struct PlacedMesh {
     mesh: Arc<Mesh>,
     placement: Placement,
-    /// Area of the triangles up to and with each, m².
-    areas: Vec<f64>,
+    /// Area of the triangles up to and with each, m²; added up when first asked for, because most meshes are no lights.
+    areas: OnceLock<Vec<f64>>,
 }
 
 impl PlacedMesh {
-    /// Places a mesh and adds up its areas.
+    /// Places a mesh by the transform from its coordinates to the world's; `None` for one that cannot be undone in `f64`.
     #[must_use]
-    pub fn new(mesh: Arc<Mesh>, placement: Placement) -> Self {
-        let mut sum = 0.0;
-        let areas = (0..mesh.data().triangles.len() as u32)
-            .map(|face| {
-                let [a, b, c] = mesh.corners(face);
-                let [p, q] = [b - a, c - a].map(|edge| placement.to_world.transform_vector3(edge));
+    pub fn new(mesh: Arc<Mesh>, to_world: DAffine3) -> Option<Self> {
+        Some(Self { mesh, placement: Placement::new(to_world)?, areas: OnceLock::new() })
+    }
+
+    fn areas(&self) -> &[f64] {
+        self.areas.get_or_init(|| {
+            let mut sum = 0.0;
+            let mut add = |face| {
+                let [a, b, c] = self.mesh.corners(face);
+                let [p, q] = [b - a, c - a].map(|edge| self.placement.to_world.transform_vector3(edge));
                 sum += 0.5 * cross(p, q).length();
                 sum
-            })
-            .collect();
-        Self { mesh, placement, areas }
+            };
+            (0..self.mesh.data().triangles.len() as u32).map(&mut add).collect()
+        })
     }
 }
 
@@ -113,29 +113,33 @@ impl Shape for PlacedMesh {
         self.mesh.closest(&self.placement.ray(ray), near, far)
     }
 
+    fn is_crossed(&self, ray: &Ray, near: f64, far: f64) -> bool {
+        self.mesh.is_crossed(&self.placement.ray(ray), near, far)
+    }
+
     fn surface(&self, _ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.placement.surface(&self.mesh, crossing.face, crossing.uv)
     }
 
     fn area(&self) -> f64 {
-        self.areas.last().copied().unwrap_or(0.0)
+        self.areas().last().copied().unwrap_or(0.0)
     }
 
     /// A mesh without triangles has no point: its is the origin, with a density of no number.
     fn sample_area(&self, u: [f64; 3]) -> SurfacePoint {
-        let Some(last) = self.areas.len().checked_sub(1) else {
+        let Some(last) = self.areas().len().checked_sub(1) else {
             return SurfacePoint {
                 position: DVec3::ZERO,
                 error: 0.0,
                 normal: DVec3::Z,
                 shading: DVec3::Z,
                 tangent: DVec3::X,
-                uv: glam::DVec2::ZERO,
+                uv: DVec2::ZERO,
             };
         };
         let chosen = u[0] * self.area();
-        let face = self.areas.partition_point(|&sum| sum <= chosen).min(last);
+        let face = self.areas().partition_point(|&sum| sum <= chosen).min(last);
         let (fold, v) = (u[1].sqrt(), u[2]);
-        self.placement.surface(&self.mesh, face as u32, glam::DVec2::new(fold * (1.0 - v), fold * v))
+        self.placement.surface(&self.mesh, face as u32, DVec2::new(fold * (1.0 - v), fold * v))
     }
 }

@@ -4,19 +4,19 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::accelerate::{self, Surface, Surfaces};
+use super::accelerate::Surfaces;
 use super::bands::Bands;
 use super::emission::Emission;
 use super::light::Light;
 use super::light::area::AreaLight;
 use super::material::Material;
-use super::shape::Bounds;
+use super::shape::{Bounds, Shape};
 
 /// One surface of a scene with what it is made of.
 #[derive(Debug, Clone)]
 pub struct Part {
     /// Where it is.
-    pub surface: Surface,
+    pub shape: Arc<dyn Shape>,
     /// How it scatters, for the scene's bands.
     pub material: Arc<dyn Material>,
     /// What it emits, for the scene's bands.
@@ -39,31 +39,25 @@ pub struct Scene {
 
 impl Scene {
     /// Puts a scene together; every emitting surface of finite area becomes a light behind `lights`.
-    ///
-    /// # Errors
-    /// [`accelerate::Error`] for surfaces that cannot be searched.
-    pub fn new(bands: Bands, parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Result<Self, accelerate::Error> {
+    #[must_use]
+    pub fn new(bands: Bands, parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Self {
         let mut lights = lights;
         let mut surface_of_light = vec![None; lights.len()];
         let mut light_of_surface = Vec::with_capacity(parts.len());
-        let (mut surfaces, mut materials, mut emissions) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut shapes, mut materials, mut emissions) = (Vec::new(), Vec::new(), Vec::new());
         for (index, part) in parts.into_iter().enumerate() {
-            let shape = part.emission.as_ref().map(|_| part.surface.as_shape());
-            let light = match (&part.emission, shape) {
-                (Some(emission), Some(shape)) if shape.area().is_finite() => {
-                    lights.push(Arc::new(AreaLight::new(shape, Arc::clone(emission))));
-                    surface_of_light.push(Some(index));
-                    Some(lights.len() - 1)
-                }
-                _ => None,
-            };
+            let light = part.emission.as_ref().filter(|_| part.shape.area().is_finite()).map(|emission| {
+                lights.push(Arc::new(AreaLight::new(Arc::clone(&part.shape), Arc::clone(emission))));
+                surface_of_light.push(Some(index));
+                lights.len() - 1
+            });
             light_of_surface.push(light);
-            surfaces.push(part.surface);
+            shapes.push(part.shape);
             materials.push(part.material);
             emissions.push(part.emission);
         }
-        let surfaces = Surfaces::new(surfaces)?;
-        Ok(Self { bands, surfaces, materials, emissions, lights, light_of_surface, surface_of_light })
+        let surfaces = Surfaces::new(shapes);
+        Self { bands, surfaces, materials, emissions, lights, light_of_surface, surface_of_light }
     }
 
     /// The wavelengths it was prepared for.

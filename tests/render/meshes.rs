@@ -5,9 +5,11 @@ use std::sync::Arc;
 use glam::{DAffine3, DQuat, DVec3};
 use photopic::geometry::direction::from_angles;
 use photopic::math::random::Stream;
-use photopic::render::accelerate::{Surface, Surfaces};
+use photopic::render::accelerate::Surfaces;
 use photopic::render::mesh::{Mesh, MeshData};
+use photopic::render::placed::PlacedMesh;
 use photopic::render::ray::{Crossing, Ray};
+use photopic::render::shape::Shape;
 use photopic::render::shape::triangle::cross_triangle;
 use proptest::prelude::*;
 
@@ -37,6 +39,10 @@ fn ball(refinements: u32, scale: f64, centre: DVec3) -> MeshData {
     }
     let positions = positions.into_iter().map(|p| centre + scale * p).collect();
     MeshData { positions, triangles, ..MeshData::default() }
+}
+
+fn placed(mesh: &Arc<Mesh>, to_world: DAffine3) -> Arc<dyn Shape> {
+    Arc::new(PlacedMesh::new(Arc::clone(mesh), to_world).expect("regular"))
 }
 
 fn direction(stream: &mut Stream) -> DVec3 {
@@ -128,9 +134,7 @@ proptest! {
             data.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
         }
         let mesh = Mesh::new(data.clone()).expect("sound");
-        let surfaces = Surfaces::new(vec![
-            Surface::mesh(Arc::new(Mesh::new(data.clone()).expect("sound")), DAffine3::IDENTITY).expect("regular"),
-        ]).expect("few");
+        let surfaces = Surfaces::new(vec![placed(&Arc::new(Mesh::new(data.clone()).expect("sound")), DAffine3::IDENTITY)]);
         for i in 0..60 {
             let origin = shift + scale * 2.0 * stream.uniforms::<1>()[0] * direction(&mut stream);
             let aim = match data.positions.get(3 * i) {
@@ -165,8 +169,7 @@ fn instances_are_met_where_their_copies_would_be() {
             DAffine3::from_scale_rotation_translation(scale, turn, 6.0 * b * direction(&mut stream))
         })
         .collect();
-    let instances = transforms.iter().map(|&t| Surface::mesh(Arc::clone(&mesh), t).expect("regular"));
-    let instances = Surfaces::new(instances.collect()).expect("few");
+    let instances = Surfaces::new(transforms.iter().map(|&t| placed(&mesh, t)).collect());
     let copies: Vec<MeshData> = transforms
         .iter()
         .map(|t| MeshData {

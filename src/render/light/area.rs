@@ -52,6 +52,12 @@ impl Light for AreaLight {
         Some(Towards { distance: crossing.t, ..towards })
     }
 
+    fn pdf_towards(&self, from: DVec3, direction: DVec3) -> f64 {
+        let ray = Ray { origin: from, direction };
+        let point = self.shape.cross(&ray, 0.0, f64::INFINITY).map(|crossing| self.shape.surface(&ray, &crossing));
+        point.map_or(0.0, |point| self.shape.pdf_towards(from, &point))
+    }
+
     fn emit(&self, u: [f64; 5], flux: &mut [f64]) -> Option<Ray> {
         let (back, turned) = if self.emission.is_two_sided() { sampling::split(u[3], 0.5) } else { (false, u[3]) };
         let point = self.shape.sample_area([u[0], u[1], u[2]]);

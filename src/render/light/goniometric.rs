@@ -543,7 +543,7 @@ mod tests {
         let grid = Arc::new(Grid::new(vec![500.0, 600.0]).expect("a grid"));
         let spectra = AngularSpectra::new(grid, &[shape.scaled(1.0), shape.scaled(3.0)]).expect("two tables");
         // Midpoints 525 and 575 nm: 1.5 and 2.5 by the straight line.
-        let bands = Bands::midpoints(500.0, 600.0, 2);
+        let bands = Bands::nodes(vec![525.0, 575.0], 50.0);
         let by_direction = Goniometric::spectral(&spectra, &placements()[3], &bands).expect("a light");
         let shared = Goniometric::new(shape, &placements()[3], &[1.5, 2.5]).expect("a light");
         let from = DVec3::new(0.4, 0.1, 0.0);

@@ -7,16 +7,29 @@
 //! | [`point`] | isotropic point | one direction |
 //! | [`spot`] | cosine spot, hard cone | one direction |
 //! | [`goniometric`] | luminaire of a photometric file, a point or from its opening | one direction |
+//! | [`barzel`] | Pixar's production light | one direction |
+//! | [`environment`] | constant surroundings, or a picture ([`projection`]) | all around |
+//! | [`sky`] | CIE standard general skies | the hemisphere |
+//! | [`sun`] | the sun by date, time and place | a disc |
 //! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
+//!
+//! [`choice`] chooses among them; lights at infinity shine through the scene's [`bounding`] sphere.
 
+pub mod barzel;
 pub mod bounding;
 mod cells;
 #[cfg(test)]
 mod check;
+pub mod choice;
 pub mod distant;
+pub mod environment;
 pub mod goniometric;
 pub mod point;
+pub mod projection;
+pub mod sky;
 pub mod spot;
+pub mod sun;
+pub mod superellipse;
 
 use glam::DVec3;
 
@@ -52,6 +65,16 @@ pub trait Light: std::fmt::Debug + Send + Sync {
     /// A bound on the irradiance that it can make on a surface near `from`, summed over the bands, to choose between lights; any
     /// positive figure is right (infinite at a point light itself), a close one makes less noise.
     fn importance(&self, from: DVec3) -> f64;
+
+    /// Whether anything may stand between it and what it lights; a production light may shine through.
+    fn casts_shadows(&self) -> bool {
+        true
+    }
+
+    /// Whether it travels as light does, so that the rays of [`Light::emit`] stand for it; a production light may not.
+    fn emits_what_arrives(&self) -> bool {
+        true
+    }
 }
 
 /// Why a light was refused.

@@ -1,7 +1,35 @@
 //! Shapes: where rays cross them, their area, and points and directions drawn on them.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | [`sphere`], [`cylinder`] | round shapes; a tube, open or capped |
+//! | [`plane`] | without bounds |
+//! | [`disk`] | disk and annulus |
+//! | [`rectangle`], [`triangle`], [`polygon`] | flat shapes with straight edges; rectangle also means parallelogram |
+//! | [`polyhedron`] | solid with flat faces |
+//! | [`shear`], [`rounding`] | a ray's own coordinates, in which tests are watertight; bounds of rounding errors |
+//! | [`error`] | what is wrong with the measures of a shape |
+//!
+//! Constructors take world coordinates and prepare frames, normals and areas. The rounding of a crossing is bounded in
+//! [`SurfacePoint::error`] so that a ray from [`SurfacePoint::origin_towards`] never meets the flat or outwardly round surface
+//! that it leaves. Projected solid angles in closed form are accurate relative to themselves, for sources of any size.
 
+pub mod cylinder;
+pub mod disk;
+pub mod error;
+mod facet;
+mod outline;
+mod patches;
+pub mod plane;
+pub mod polygon;
+pub mod polyhedron;
+pub mod rectangle;
 pub mod rounding;
 pub mod shear;
+pub mod sphere;
+mod spherical;
+#[cfg(test)]
+mod tests;
 pub mod triangle;
 
 use glam::DVec3;
@@ -51,6 +79,11 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
     /// The first crossing with `near < t < far`.
     fn cross(&self, ray: &Ray, near: f64, far: f64) -> Option<Crossing>;
 
+    /// Whether there is any crossing with `near < t < far`.
+    fn is_crossed(&self, ray: &Ray, near: f64, far: f64) -> bool {
+        self.cross(ray, near, far).is_some()
+    }
+
     /// The surface at a crossing of this shape.
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint;
 
@@ -65,22 +98,13 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
     ///
     /// The default draws a point of the area: pdf = r² / (A |cosθ|).
     fn sample_towards(&self, from: DVec3, u: [f64; 3]) -> Option<Towards> {
-        let point = self.sample_area(u);
-        let to = point.position - from;
-        let distance = to.length();
-        let direction = to / distance;
-        let cos = point.normal.dot(direction).abs();
-        let pdf = distance * (distance / (self.area() * cos));
-        (distance > 0.0 && cos > 0.0 && pdf.is_finite()).then_some(Towards { direction, distance, pdf, delta: false })
+        towards_point(self.area(), from, &self.sample_area(u))
     }
 
     /// The density per solid angle with which [`Shape::sample_towards`] draws, from `from`, the direction in which `point` (a crossing
     /// of this shape) lies.
     fn pdf_towards(&self, from: DVec3, point: &SurfacePoint) -> f64 {
-        let to = point.position - from;
-        let distance = to.length();
-        let cos = (point.normal.dot(to) / distance).abs();
-        if cos > 0.0 { distance * (distance / (self.area() * cos)) } else { 0.0 }
+        pdf_of_point(self.area(), from, point)
     }
 
     /// ∫ cosθ⁺ dω over the directions from `from` in which the shape is seen, cosθ to `normal` and clipped at the horizon (projected
@@ -89,4 +113,21 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
         let _ = (from, normal);
         None
     }
+}
+
+/// The direction towards a point drawn uniformly from an area: pdf = r² / (A |cosθ|).
+fn towards_point(area: f64, from: DVec3, point: &SurfacePoint) -> Option<Towards> {
+    let to = point.position - from;
+    let distance = to.length();
+    let direction = to / distance;
+    let pdf = pdf_of_point(area, from, point);
+    (pdf > 0.0 && pdf.is_finite()).then_some(Towards { direction, distance, pdf, delta: false })
+}
+
+/// The density of that direction, 1/sr; 0 for a point seen edge-on.
+fn pdf_of_point(area: f64, from: DVec3, point: &SurfacePoint) -> f64 {
+    let to = point.position - from;
+    let distance = to.length();
+    let cos = (point.normal.dot(to) / distance).abs();
+    if cos > 0.0 { distance * (distance / (area * cos)) } else { 0.0 }
 }

@@ -1,10 +1,108 @@
 //! Triangle with corners a, b, c; its outside is where they stand anticlockwise.
+//!
+//! | | |
+//! |---|---|
+//! | crossing | watertight ([`cross_triangle`]) |
+//! | uv | weights of b and c (barycentric) |
+//! | tangent | from a to b |
+//! | directions | uniform over the solid angle (J. Arvo, *Stratified Sampling of Spherical Triangles*, SIGGRAPH 1995, in the products of Van Oosterom & Strackee 1983) |
+//! | projected solid angle | Lambert's sum over the edges, cut at the horizon |
 
 use glam::{DVec2, DVec3};
 
-use super::rounding::gamma;
+use super::error::{ShapeError, finite};
+use super::facet::Facet;
+use super::rounding::{cross, gamma};
 use super::shear::{Shear, edge};
-use crate::render::ray::{Crossing, Ray};
+use super::{Bounds, Shape, outline, pdf_of_point, spherical, towards_point};
+use crate::geometry::solid_angle;
+use crate::render::ray::{Crossing, Ray, SurfacePoint, Towards};
+
+/// A triangle in world coordinates.
+#[derive(Debug, Clone)]
+pub struct Triangle {
+    corners: [DVec3; 3],
+    /// The anchor is the first corner.
+    facet: Facet,
+    tangent: DVec3,
+    area: f64,
+}
+
+impl Triangle {
+    /// The triangle with these corners (m).
+    ///
+    /// # Errors
+    ///
+    /// What is not finite or spans no area.
+    pub fn new(a: DVec3, b: DVec3, c: DVec3) -> Result<Self, ShapeError> {
+        let corners = [finite("first corner", a)?, finite("second corner", b)?, finite("third corner", c)?];
+        let facet = outline::plane("triangle", &corners)?;
+        Ok(Self { corners, facet, tangent: (b - a).normalize(), area: 0.5 * cross(b - a, c - a).length() })
+    }
+
+    fn solid_angle(&self, from: DVec3) -> f64 {
+        let [a, b, c] = self.corners.map(|p| p - from);
+        solid_angle::triangle(a, b, c)
+    }
+
+    fn point(&self, uv: DVec2) -> SurfacePoint {
+        let [a, b, c] = self.corners;
+        let (position, error) = self.facet.settle(a + uv.x * (b - a) + uv.y * (c - a));
+        let normal = self.facet.normal;
+        SurfacePoint { position, error, normal, shading: normal, tangent: self.tangent, uv }
+    }
+}
+
+impl Shape for Triangle {
+    fn bounds(&self) -> Bounds {
+        Bounds::of(self.corners)
+    }
+
+    fn cross(&self, ray: &Ray, near: f64, far: f64) -> Option<Crossing> {
+        let [a, b, c] = self.corners;
+        cross_triangle(ray, a, b, c, near, far)
+    }
+
+    fn surface(&self, _: &Ray, crossing: &Crossing) -> SurfacePoint {
+        self.point(crossing.uv)
+    }
+
+    fn area(&self) -> f64 {
+        self.area
+    }
+
+    fn sample_area(&self, [_, u, v]: [f64; 3]) -> SurfacePoint {
+        self.point(uniform_weights([u, v]))
+    }
+
+    fn sample_towards(&self, from: DVec3, u: [f64; 3]) -> Option<Towards> {
+        let omega = self.solid_angle(from);
+        if !spherical::RANGE_SR.contains(&omega) {
+            return towards_point(self.area, from, &self.sample_area(u));
+        }
+        let [a, b, c] = self.corners.map(|p| p - from);
+        let direction = spherical::sample(a, b, c, omega, [u[1], u[2]])?;
+        let distance = self.facet.distance(from, direction);
+        (distance > 0.0).then_some(Towards { direction, distance, pdf: 1.0 / omega, delta: false })
+    }
+
+    fn pdf_towards(&self, from: DVec3, point: &SurfacePoint) -> f64 {
+        let omega = self.solid_angle(from);
+        if spherical::RANGE_SR.contains(&omega) { 1.0 / omega } else { pdf_of_point(self.area, from, point) }
+    }
+
+    fn projected_solid_angle(&self, from: DVec3, normal: DVec3) -> Option<f64> {
+        Some(outline::projected(self.corners.into_iter(), &self.facet, from, normal))
+    }
+}
+
+/// Weights of the second and third corner, uniform over a triangle's area: the square folded along the edges at the first
+/// (G. Turk, *Generating Random Points in Triangles*, Graphics Gems, 1990).
+#[must_use]
+pub fn uniform_weights([u, v]: [f64; 2]) -> DVec2 {
+    let root = u.sqrt();
+    DVec2::new(root * (1.0 - v), root * v)
+}
 
 /// Where a ray crosses a triangle with `near < t < far`, from either side; `uv` are the weights of `b` and `c`, `face` is 0.
 ///

@@ -1,0 +1,232 @@
+//! Scenes in words: TOML in, a typed and checked description out. No file is opened here.
+//!
+//! The structures below are the format: what they do not name is an error with its line and column, and
+//! [`schema`] prints them as a JSON schema. `docs/scenes.md` explains them with examples.
+//!
+//! - Positions and directions are `[x, y, z]`, metres, z upwards unless the scene is turned otherwise; every other quantity carries its
+//!   unit in a text ([`quantity`]).
+//! - A shape, light or sensor is a table with the key of its kind: `sphere = { … }`, `point = { … }`, `illuminance = { … }`.
+
+pub mod light;
+pub mod quantity;
+pub mod sensor;
+pub mod spectrum;
+pub mod surface;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Spanned;
+
+use light::Light;
+use sensor::Sensor;
+use spectrum::SpectrumSource;
+use surface::Shape;
+
+/// A point or a vector, m.
+type Vector = [f64; 3];
+
+/// A scene.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// A name for reports.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// How to render.
+    #[serde(default)]
+    pub render: Render,
+    /// Spectra that the scene names.
+    #[serde(default)]
+    pub spectra: BTreeMap<String, SpectrumSource>,
+    /// Materials.
+    #[serde(default)]
+    pub material: Vec<Material>,
+    /// Surfaces.
+    #[serde(default)]
+    pub shape: Vec<Shape>,
+    /// Lights that are no surfaces.
+    #[serde(default)]
+    pub light: Vec<Light>,
+    /// Instruments; at least one.
+    pub sensor: Vec<Sensor>,
+}
+
+/// How to render.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Render {
+    /// Which light is followed.
+    pub solver: Solver,
+    /// Samples of a pixel.
+    #[schemars(range(min = 1))]
+    pub samples: u64,
+    /// Samples of a meter, at most where a target is given.
+    #[schemars(range(min = 1))]
+    pub meter_samples: u64,
+    /// Names all random numbers.
+    pub seed: u64,
+    /// The longest path, edges from the instrument to the light; without it none is cut.
+    pub max_edges: Option<u32>,
+    /// Step between wavelengths, nm; without it the coarsest that keeps to `wavelength_tolerance`.
+    pub wavelength_step_nm: Option<f64>,
+    /// The greatest error of the sum over wavelengths, relative.
+    pub wavelength_tolerance: f64,
+}
+
+impl Default for Render {
+    fn default() -> Self {
+        Self {
+            solver: Solver::Path,
+            samples: 64,
+            meter_samples: 1 << 18,
+            seed: 0,
+            max_edges: None,
+            wavelength_step_nm: None,
+            wavelength_tolerance: 1e-3,
+        }
+    }
+}
+
+/// Which light is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Solver {
+    /// All of it.
+    Path,
+    /// Direct light and its reflections in mirrors and glass.
+    Whitted,
+    /// Direct light.
+    Direct,
+}
+
+/// A material; one of the kinds.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Its name, which shapes refer to.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// Diffuse (Lambertian) with this reflectance, 0 to 1.
+    #[serde(default)]
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub reflectance: Option<Spanned<SpectrumSource>>,
+    /// A description as of `photopic brdf`: `"ggx(alpha=0.1, medium=Au)"`.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub brdf: Option<Spanned<String>>,
+    /// Dark from the inside of shapes; otherwise both sides are alike.
+    #[serde(default)]
+    pub one_sided: bool,
+}
+
+/// What is wrong with a scene, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{line}:{column}: {message}")]
+pub struct Error {
+    /// Line, from 1.
+    pub line: u64,
+    /// Column in characters, from 1.
+    pub column: u64,
+    /// What was found, and what was expected.
+    pub message: String,
+}
+
+impl Error {
+    /// At a range of bytes of the text.
+    #[must_use]
+    pub fn at(text: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
+        let before = text.get(..span.start).unwrap_or(text);
+        let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
+        Self {
+            line: before.matches('\n').count() as u64 + 1,
+            column: line.chars().count() as u64 + 1,
+            message: message.into(),
+        }
+    }
+}
+
+impl Description {
+    /// Reads a scene.
+    ///
+    /// # Errors
+    /// The first mistake in TOML, in keys, in types and in units.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        toml::from_str(text).map_err(|e| Error::at(text, &e.span().unwrap_or_default(), e.message()))
+    }
+}
+
+/// The JSON schema of scenes (draft 2020-12).
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(Description).to_value()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = r#"
+title = "a lamp over a table"
+[render]
+samples = 16
+[spectra]
+wood = [[400, 0.1], [700, 0.5]]
+[[material]]
+name = "table"
+reflectance = "wood"
+[[shape]]
+name = "top"
+material = "table"
+rectangle = { corner = [0, 0, 0], edges = [[2, 0, 0], [0, 1, 0]] }
+[[light]]
+point = { at = [1, 0.5, 2], flux = "800 lm" }
+spectrum = "LED-B3"
+[[sensor]]
+name = "middle"
+illuminance = { at = [1, 0.5, 0] }
+"#;
+
+    fn refused(from: &str, to: &str) -> String {
+        assert!(SCENE.contains(from), "{from}");
+        Description::parse(&SCENE.replacen(from, to, 1)).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_scene_is_read() {
+        let scene = Description::parse(SCENE).unwrap();
+        assert_eq!((scene.shape.len(), scene.light.len(), scene.sensor.len()), (1, 1, 1));
+        assert_eq!(scene.spectra["wood"], SpectrumSource::Table(vec![[400.0, 0.1], [700.0, 0.5]]));
+        assert_eq!((scene.render.samples, scene.render.seed), (16, 0));
+        let point = scene.light[0].point.as_ref().unwrap().get_ref();
+        assert_eq!(point.flux, Some(quantity::Flux { value: 800.0, kind: quantity::Kind::Luminous }));
+    }
+
+    /// The place is that of the key or the value to blame, the message names both what was found and what was expected.
+    #[test]
+    fn mistakes_are_told_with_their_place() {
+        let message = refused("samples", "sample");
+        assert!(message.starts_with("4:1: unknown field `sample`, expected one of"), "{message}");
+        let message = refused("\"800 lm\"", "\"800 cd\"");
+        assert!(message.starts_with("15:36: found `800 cd`; expected a flux"), "{message}");
+        let message = refused("\"800 lm\"", "800");
+        assert!(message.starts_with("15:36: ") && message.contains("string"), "{message}");
+        let message = refused("[0, 1, 0]", "[0, 1]");
+        assert!(message.starts_with("13:"), "{message}");
+        let message = refused("[[400, 0.1], [700, 0.5]]", "[[700, 0.1], [400, 0.5]]");
+        assert!(message.starts_with("6:8: found 400 nm"), "{message}");
+        let message = refused("name = \"middle\"\n", "");
+        assert!(message.contains("missing field `name`"), "{message}");
+        assert!(refused("[render]", "[render").starts_with("3:"));
+    }
+
+    #[test]
+    fn the_schema_names_every_kind() {
+        let text = schema().to_string();
+        for key in ["sphere", "rectangle", "illuminance", "LED-B3", "additionalProperties"] {
+            assert!(text.contains(key), "{key}");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Instruments of a scene.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::Vector;
+use super::quantity::{Angle, Length, Share};
+
+/// An instrument; one of the kinds.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sensor {
+    /// Its name; not two of one name.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// Report the spectrum with its colour figures.
+    #[serde(default)]
+    pub spectrum: bool,
+    /// Sample until the standard error is this share of the reading.
+    #[serde(default)]
+    pub target: Option<Share>,
+    /// Illuminance on a plane: at a point, on a grid, or on average over a shape.
+    #[serde(default)]
+    #[schemars(with = "Option<Illuminance>")]
+    pub illuminance: Option<Spanned<Illuminance>>,
+    /// Luminance as a spot meter sees it.
+    #[serde(default)]
+    #[schemars(with = "Option<Luminance>")]
+    pub luminance: Option<Spanned<Luminance>>,
+    /// Mean illuminance of a small upright cylinder's side.
+    #[serde(default)]
+    #[schemars(with = "Option<Upright>")]
+    pub cylindrical: Option<Spanned<Upright>>,
+    /// Mean illuminance of a small hemisphere.
+    #[serde(default)]
+    #[schemars(with = "Option<Upright>")]
+    pub hemispherical: Option<Spanned<Upright>>,
+    /// Mean illuminance of a small sphere.
+    #[serde(default)]
+    #[schemars(with = "Option<Upright>")]
+    pub spherical: Option<Spanned<Upright>>,
+    /// A picture.
+    #[serde(default)]
+    #[schemars(with = "Option<Camera>")]
+    pub camera: Option<Spanned<Camera>>,
+}
+
+/// Where an illuminance meter reads: one of `at`, `grid`, `on`.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Illuminance {
+    /// A point, m.
+    #[serde(default)]
+    pub at: Option<Vector>,
+    /// The way the meter at a point faces; upwards without it.
+    #[serde(default)]
+    pub normal: Option<Vector>,
+    /// Points in the middles of the cells of a rectangle, which face as it does.
+    #[serde(default)]
+    pub grid: Option<Grid>,
+    /// The mean over the outside of the shape of this name.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub on: Option<Spanned<String>>,
+}
+
+/// A grid of points.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Grid {
+    /// A corner, m.
+    pub corner: Vector,
+    /// The two edges from it, m; the meters face the side from which the turn from the first to the second is anticlockwise.
+    pub edges: [Vector; 2],
+    /// Points along each.
+    pub points: [u32; 2],
+}
+
+/// A spot meter.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Luminance {
+    /// Where it stands, m.
+    pub at: Vector,
+    /// A point on its axis, m.
+    pub look_at: Vector,
+    /// The angle across its cone of acceptance; 1° without it.
+    #[serde(default)]
+    pub acceptance: Option<Angle>,
+}
+
+/// A meter for light from all sides.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Upright {
+    /// Where, m.
+    pub at: Vector,
+    /// Its axis; upwards without it.
+    #[serde(default)]
+    pub axis: Option<Vector>,
+}
+
+/// A camera. Its pictures are written where a file is named.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Where it stands, m.
+    pub at: Vector,
+    /// What it looks at, m.
+    pub look_at: Vector,
+    /// The upward direction of the picture; z without it.
+    #[serde(default)]
+    pub up: Option<Vector>,
+    /// Columns and rows.
+    pub resolution: [u32; 2],
+    /// How directions are laid out.
+    #[serde(default)]
+    pub projection: Projection,
+    /// Angle across the width (perspective) or across the circle (fisheye).
+    #[serde(default)]
+    pub field_of_view: Option<Angle>,
+    /// Of the lens (perspective): k1, k2, p1, p2, k3 as OpenCV has them.
+    #[serde(default)]
+    pub distortion: Option<[f64; 5]>,
+    /// Radius of the aperture, for depth of field (perspective, with `focus`).
+    #[serde(default)]
+    pub aperture_radius: Option<Length>,
+    /// Distance that is sharp.
+    #[serde(default)]
+    pub focus: Option<Length>,
+    /// Spectral OpenEXR to write.
+    #[serde(default)]
+    pub exr: Option<String>,
+    /// Luminance in false colours to write (PNG or SVG).
+    #[serde(default)]
+    pub falsecolor: Option<String>,
+    /// Picture for the screen to write (PNG).
+    #[serde(default)]
+    pub picture: Option<String>,
+}
+
+/// How a camera lays out directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Projection {
+    /// Straight lines stay straight.
+    #[default]
+    Perspective,
+    /// Equidistant.
+    Fisheye,
+    /// All directions.
+    Equirectangular,
+}

@@ -1,0 +1,160 @@
+//! Surfaces of a scene and what they emit.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::Vector;
+use super::quantity::{Flux, Irradiance, Length, Radiance};
+use super::spectrum::SpectrumSource;
+
+/// A surface; one of the kinds.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shape {
+    /// Its name, for reports; not two of one name.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub name: Option<Spanned<String>>,
+    /// The name of its material; without one it is black.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub material: Option<Spanned<String>>,
+    /// What it emits.
+    #[serde(default)]
+    #[schemars(with = "Option<Emission>")]
+    pub emission: Option<Spanned<Emission>>,
+    /// A sphere, its outside outside.
+    #[serde(default)]
+    #[schemars(with = "Option<Sphere>")]
+    pub sphere: Option<Spanned<Sphere>>,
+    /// A plane without bounds.
+    #[serde(default)]
+    #[schemars(with = "Option<Plane>")]
+    pub plane: Option<Spanned<Plane>>,
+    /// A disk or a ring.
+    #[serde(default)]
+    #[schemars(with = "Option<Disk>")]
+    pub disk: Option<Spanned<Disk>>,
+    /// A rectangle or parallelogram.
+    #[serde(default)]
+    #[schemars(with = "Option<Rectangle>")]
+    pub rectangle: Option<Spanned<Rectangle>>,
+    /// A triangle or a flat polygon, corners in order; its outside is where they stand anticlockwise.
+    #[serde(default)]
+    #[schemars(with = "Option<Polygon>")]
+    pub polygon: Option<Spanned<Polygon>>,
+    /// A box with its edges along the axes: its outside outside, or inside for a room.
+    #[serde(default, rename = "box")]
+    #[schemars(with = "Option<Cuboid>")]
+    pub cuboid: Option<Spanned<Cuboid>>,
+    /// A tube, with or without its ends.
+    #[serde(default)]
+    #[schemars(with = "Option<Cylinder>")]
+    pub cylinder: Option<Spanned<Cylinder>>,
+}
+
+/// What a surface emits: one amount, or the radiance as a file gives it.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Emission {
+    /// Its colour; without one the same at every wavelength.
+    #[serde(default)]
+    pub spectrum: Option<SpectrumSource>,
+    /// Radiance along the normal.
+    #[serde(default)]
+    pub radiance: Option<Radiance>,
+    /// Exitance.
+    #[serde(default)]
+    pub exitance: Option<Irradiance>,
+    /// Flux of the whole surface.
+    #[serde(default)]
+    pub flux: Option<Flux>,
+    /// The radiance falls off as this power of the cosine to the normal.
+    #[serde(default)]
+    pub cosine_power: f64,
+    /// Both sides shine.
+    #[serde(default)]
+    pub two_sided: bool,
+}
+
+/// A sphere.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sphere {
+    /// Centre, m.
+    pub centre: Vector,
+    /// Radius.
+    pub radius: Length,
+}
+
+/// A plane.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plane {
+    /// A point of it, m.
+    pub point: Vector,
+    /// Its outside.
+    pub normal: Vector,
+}
+
+/// A disk.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Disk {
+    /// Centre, m.
+    pub centre: Vector,
+    /// Its outside.
+    pub normal: Vector,
+    /// Radius.
+    pub radius: Length,
+    /// Radius of the hole.
+    #[serde(default)]
+    pub inner_radius: Option<Length>,
+}
+
+/// A rectangle or parallelogram; its outside is the side from which the turn from the first edge to the second is anticlockwise.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rectangle {
+    /// A corner, m.
+    pub corner: Vector,
+    /// The two edges from it, m.
+    pub edges: [Vector; 2],
+}
+
+/// A polygon.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Polygon {
+    /// At least three corners, m.
+    pub corners: Vec<Vector>,
+}
+
+/// A box.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cuboid {
+    /// One corner, m.
+    pub from: Vector,
+    /// The opposite corner, m.
+    pub to: Vector,
+    /// A room: the outside of its walls is inside the box.
+    #[serde(default)]
+    pub inwards: bool,
+}
+
+/// A tube.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    /// Middle of one end, m.
+    pub from: Vector,
+    /// Middle of the other end, m.
+    pub to: Vector,
+    /// Radius.
+    pub radius: Length,
+    /// With both ends closed.
+    #[serde(default)]
+    pub closed: bool,
+}
