@@ -19,6 +19,7 @@
 //! | [`emission`] | what a surface emits |
 //! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
 //! | [`mesh`], [`placed`] | meshes of triangles, and where they stand |
+//! | [`format`] | files of meshes |
 //! | [`description`] | scenes in TOML |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
@@ -32,6 +33,7 @@ pub mod description;
 pub mod emission;
 pub mod estimate;
 pub mod film;
+pub mod format;
 pub mod integrator;
 pub mod light;
 pub mod material;

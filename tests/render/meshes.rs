@@ -179,7 +179,8 @@ fn instances_are_met_where_their_copies_would_be() {
         .collect();
     let mut hits = 0;
     for _ in 0..500 {
-        let ray = Ray { origin: 8.0 * direction(&mut stream), direction: direction(&mut stream) };
+        let (origin, aim) = (8.0 * direction(&mut stream), 3.0 * direction(&mut stream));
+        let ray = Ray { origin, direction: (aim - origin).normalize() };
         let found = instances.closest(&ray, f64::INFINITY);
         let expected = copies
             .iter()
