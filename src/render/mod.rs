@@ -19,6 +19,8 @@
 //! | [`material`] | scattering at a surface, reflection and transmission |
 //! | [`emission`] | what a surface emits |
 //! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
+//! | [`mesh`], [`placed`] | meshes of triangles, and where they stand |
+//! | [`format`] | files of meshes |
 //! | [`description`] | scenes in TOML |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |
@@ -34,10 +36,13 @@ pub mod emission;
 pub mod estimate;
 pub mod film;
 pub mod form_factor;
+pub mod format;
 pub mod integrator;
 pub mod light;
 pub mod material;
 pub mod measure;
+pub mod mesh;
+pub mod placed;
 pub mod ray;
 pub mod reading;
 pub mod sampler;

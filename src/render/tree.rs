@@ -155,6 +155,15 @@ impl Tree {
         Some(local)
     }
 
+    /// Numbers the boxes anew, in the order of the leaves, so that boxes close together have close numbers; the old number of each.
+    pub fn renumber(&mut self) -> Vec<u32> {
+        let old: Vec<u32> = self.parts.iter().flat_map(|part| part.numbers.iter().copied()).collect();
+        for (number, new) in (0..).zip(self.parts.iter_mut().flat_map(|part| &mut part.numbers)) {
+            *new = number;
+        }
+        old
+    }
+
     /// Bytes of the hierarchy.
     #[must_use]
     pub fn bytes(&self) -> usize {

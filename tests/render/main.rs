@@ -6,4 +6,5 @@ mod common;
 mod analytic;
 mod cli;
 mod honest;
+mod meshes;
 mod shapes;

@@ -1,0 +1,112 @@
+//! The search for surfaces, in rays per second: camera rays of the shared benchmark scenes and cosine-distributed rays from what they
+//! meet, through the meshes alone, on one and on two threads. Skipped where the folder of reference files is absent.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use glam::{DAffine3, DMat3, DVec3};
+use photopic::geometry::direction::tangents;
+use photopic::math::random::Stream;
+use photopic::render::accelerate::Surfaces;
+use photopic::render::format::ply;
+use photopic::render::mesh::Mesh;
+use photopic::render::placed::PlacedMesh;
+use photopic::render::ray::Ray;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+
+fn main() {
+    divan::main();
+}
+
+/// A mesh of `../shared/render/meshes` and its camera in `../shared/render/scenes`.
+#[derive(Debug, Clone, Copy)]
+struct Case {
+    name: &'static str,
+    eye: DVec3,
+    field_of_view_deg: f64,
+}
+
+const CASES: [Case; 2] = [
+    Case { name: "blob", eye: DVec3::new(0.0, 1.2, 4.2), field_of_view_deg: 40.0 },
+    Case { name: "spheres", eye: DVec3::new(4.2, 2.6, 6.0), field_of_view_deg: 36.0 },
+];
+
+/// Rays in the picture's rows and columns.
+const SIZE: usize = 512;
+
+fn mesh(case: Case) -> Option<Mesh> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/render/meshes");
+    let bytes = std::fs::read(root.join(format!("{}.ply", case.name))).ok()?;
+    Some(Mesh::new(ply::read(&bytes).expect("a mesh").mesh).expect("sound"))
+}
+
+fn surfaces(case: Case) -> Option<Surfaces> {
+    let placed = PlacedMesh::new(Arc::new(mesh(case)?), DAffine3::IDENTITY).expect("regular");
+    Some(Surfaces::new(vec![Arc::new(placed)]))
+}
+
+fn camera_rays(case: Case) -> Vec<Ray> {
+    let forward = (DVec3::new(0.0, -0.1, 0.0) - case.eye).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let frame = DMat3::from_cols(right, right.cross(forward), forward);
+    let half = (0.5 * case.field_of_view_deg.to_radians()).tan();
+    let at = |i: usize| half * (2.0 * (i as f64 + 0.5) / SIZE as f64 - 1.0);
+    let ray =
+        |i| Ray { origin: case.eye, direction: (frame * DVec3::new(at(i % SIZE), at(i / SIZE), 1.0)).normalize() };
+    (0..SIZE * SIZE).map(ray).collect()
+}
+
+/// Cosine-distributed rays from where the camera's rays meet the surface, in an order that has nothing in common.
+fn bounced_rays(surfaces: &Surfaces, case: Case) -> Vec<Ray> {
+    let mut stream = Stream::new(6, 5);
+    let points: Vec<_> = (camera_rays(case).iter())
+        .filter_map(|ray| {
+            let (surface, crossing) = surfaces.closest(ray, f64::INFINITY)?;
+            Some(surfaces.surface_point(surface, ray, &crossing))
+        })
+        .collect();
+    (0..SIZE * SIZE)
+        .map(|_| {
+            let [which, u, v] = stream.uniforms();
+            let point = &points[(which * points.len() as f64) as usize];
+            let (t, b) = tangents(point.normal);
+            let (sin, cos) = (std::f64::consts::TAU * v).sin_cos();
+            let direction = u.sqrt() * (cos * t + sin * b) + (1.0 - u).sqrt() * point.normal;
+            Ray { origin: point.origin_towards(direction), direction: direction.normalize() }
+        })
+        .collect()
+}
+
+fn trace(bencher: Bencher, surfaces: &Surfaces, rays: &[Ray], threads: usize) {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let closest = |ray: &Ray| surfaces.closest(ray, f64::INFINITY).map_or(0.0, |(_, crossing)| crossing.t);
+    bencher.counter(ItemsCount::new(rays.len())).bench_local(|| {
+        pool.install(|| rays.par_chunks(1024).map(|rays| rays.iter().map(closest).sum::<f64>()).sum::<f64>())
+    });
+}
+
+#[divan::bench(args = CASES, consts = [1, 2], sample_count = 10)]
+fn coherent<const THREADS: usize>(bencher: Bencher, case: Case) {
+    if let Some(surfaces) = surfaces(case) {
+        trace(bencher, &surfaces, &camera_rays(case), THREADS);
+    }
+}
+
+#[divan::bench(args = CASES, consts = [1, 2], sample_count = 10)]
+fn incoherent<const THREADS: usize>(bencher: Bencher, case: Case) {
+    if let Some(surfaces) = surfaces(case) {
+        trace(bencher, &surfaces, &bounced_rays(&surfaces, case), THREADS);
+    }
+}
+
+/// The tree of a mesh, with two threads.
+#[divan::bench(args = CASES, sample_count = 5)]
+fn build(bencher: Bencher, case: Case) {
+    if let Some(mesh) = mesh(case) {
+        let data = mesh.data().clone();
+        bencher.bench_local(|| Mesh::new(data.clone()));
+    }
+}
