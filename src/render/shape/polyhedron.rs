@@ -190,3 +190,42 @@ impl Shape for Polyhedron {
         Some(seen().map(of).sum())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tetrahedron(faces: [[usize; 3]; 4]) -> Result<Polyhedron, ShapeError> {
+        let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        Polyhedron::new(&vertices, &faces.map(|f| f.to_vec()))
+    }
+
+    #[test]
+    fn bad_solids_are_named() {
+        let good = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        assert!(tetrahedron(good).is_ok_and(|t| t.is_convex()));
+        let turned = good.map(|[a, b, c]| [a, c, b]);
+        assert!(
+            matches!(tetrahedron(turned), Err(ShapeError::InsideOut { volume }) if (volume + 1.0 / 6.0).abs() < 1e-15)
+        );
+        let one_turned = [[0, 1, 2], good[1], good[2], good[3]];
+        assert!(matches!(tetrahedron(one_turned), Err(ShapeError::Open { .. })));
+        let beyond = [good[0], good[1], good[2], [1, 2, 4]];
+        assert_eq!(tetrahedron(beyond).unwrap_err(), ShapeError::NoVertex { face: 3, vertex: 4, last: 3 });
+        let flat = [good[0], good[1], good[2], [1, 2, 2]];
+        assert!(matches!(tetrahedron(flat), Err(ShapeError::Face { face: 3, .. })));
+        assert!(matches!(Polyhedron::new(&[], &[]), Err(ShapeError::TooFew { what: "faces", .. })));
+        assert!(Polyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0)).is_err());
+    }
+
+    #[test]
+    fn a_box_seen_face_on_is_its_face() {
+        let solid = Polyhedron::cuboid(DVec3::new(-1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, 2.0)).unwrap();
+        // 4·s·atan(s), s = 1/√2: a square of side 2 at the distance 1.
+        let s = 1.0 / 2.0_f64.sqrt();
+        let got = solid.projected_solid_angle(DVec3::ZERO, DVec3::Z).unwrap();
+        assert!((got - 4.0 * s * s.atan()).abs() < 1e-14, "{got}");
+        assert_eq!(solid.projected_solid_angle(DVec3::new(0.1, 0.2, 1.5), DVec3::X), Some(PI));
+        assert!((solid.area() - 16.0).abs() < 1e-14);
+    }
+}
