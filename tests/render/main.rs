@@ -4,5 +4,6 @@
 mod common;
 
 mod analytic;
+mod files;
 mod meshes;
 mod shapes;
