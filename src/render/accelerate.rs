@@ -28,7 +28,7 @@ impl Surfaces {
             if bounds.is_finite() {
                 bounded.push(number);
                 boxes.push(bounds);
-            } else {
+            } else if bounds != Bounds::EMPTY {
                 unbounded.push(number);
             }
         }

@@ -1,7 +1,7 @@
 //! Meshes of triangles: their own coordinates, a tree to search them, the surface at a crossing.
 //!
-//! Corners are kept in `f64` (24 bytes for two triangles), normals and texture coordinates in `f32`. Ten million triangles with
-//! their tree take about half a gibibyte.
+//! Corners are kept in `f64` (24 bytes for two triangles), normals and texture coordinates in `f32`. A tree takes several times its
+//! final size while it is built, so large meshes are first cut into blocks that have trees of their own.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -56,6 +56,9 @@ pub enum MeshError {
     },
 }
 
+/// Triangles of a block at most.
+const BLOCK: usize = 1 << 20;
+
 /// A mesh in its own coordinates, ready to be searched; placed in the world any number of times.
 #[derive(Debug)]
 pub struct Mesh {
@@ -63,6 +66,16 @@ pub struct Mesh {
     data: MeshData,
     skipped: usize,
     bounds: Bounds,
+    blocks: Vec<Block>,
+    /// Over the blocks.
+    tree: Tree,
+}
+
+/// Some of a mesh's triangles, one after the other.
+#[derive(Debug)]
+struct Block {
+    /// The number of the first triangle.
+    first: usize,
     tree: Tree,
 }
 
@@ -73,7 +86,11 @@ impl Mesh {
     /// # Errors
     ///
     /// A triangle names a missing corner, or there are not as many normals or texture coordinates as corners.
-    pub fn new(mut data: MeshData) -> Result<Self, MeshError> {
+    pub fn new(data: MeshData) -> Result<Self, MeshError> {
+        Self::in_blocks(data, BLOCK)
+    }
+
+    fn in_blocks(mut data: MeshData, most: usize) -> Result<Self, MeshError> {
         let corners = data.positions.len();
         for (what, found) in [("normals", data.normals.len()), ("texture coordinates", data.uvs.len())] {
             if found != 0 && found != corners {
@@ -96,12 +113,30 @@ impl Mesh {
             across.is_finite() && across != DVec3::ZERO
         });
         let skipped = given - data.triangles.len();
-        let of = |names: &[u32; 3]| Bounds::of(names.map(|corner| data.positions[corner as usize]));
-        let boxes: Vec<Bounds> = data.triangles.iter().map(of).collect();
+        let of = |names: &[u32; 3]| Bounds::of(names.map(|corner| positions[corner as usize]));
+        let mut blocks = Vec::new();
+        let mut boxes = Vec::new();
+        let mut open = vec![0..data.triangles.len()];
+        while let Some(range) = open.pop() {
+            let triangles = &mut data.triangles[range.clone()];
+            let bounds = triangles.iter().map(of).fold(Bounds::EMPTY, Bounds::union);
+            if triangles.len() > most {
+                // Halved across its longest side.
+                let axis = (bounds.max - bounds.min).max_position();
+                let place = |t: &[u32; 3]| t.iter().map(|&corner| positions[corner as usize][axis]).sum::<f64>();
+                let half = triangles.len() / 2;
+                triangles.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)));
+                open.extend([range.start + half..range.end, range.start..range.start + half]);
+            } else if !triangles.is_empty() {
+                let mut tree = Tree::new(&triangles.iter().map(of).collect::<Vec<_>>());
+                let renumbered: Vec<_> = tree.renumber().into_iter().map(|i| triangles[i as usize]).collect();
+                triangles.copy_from_slice(&renumbered);
+                blocks.push(Block { first: range.start, tree });
+                boxes.push(bounds);
+            }
+        }
         let bounds = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
-        let mut tree = Tree::new(&boxes);
-        data.triangles = tree.renumber().into_iter().map(|i| data.triangles[i as usize]).collect();
-        Ok(Self { data, skipped, bounds, tree })
+        Ok(Self { data, skipped, bounds, blocks, tree: Tree::new(&boxes) })
     }
 
     /// What it is made of; triangles in the mesh's own order.
@@ -134,12 +169,19 @@ impl Mesh {
     pub fn closest(&self, ray: &Ray, near: f64, far: f64) -> Option<Crossing> {
         let shear = Shear::new(ray);
         let mut found = None;
-        self.tree.closest(ray.origin, ray.direction, far, |triangle, far| {
-            let [a, b, c] = self.corners(triangle as u32);
-            let crossing = cross_sheared(&shear, a, b, c, near, far)?;
-            found = Some(Crossing { face: triangle as u32, ..crossing });
-            Some(crossing.t)
-        });
+        let mut search = |block: &Block, far| {
+            block.tree.closest(ray.origin, ray.direction, far, |place, far| {
+                let face = (block.first + place) as u32;
+                let [a, b, c] = self.corners(face);
+                let crossing = cross_sheared(&shear, a, b, c, near, far)?;
+                found = Some(Crossing { face, ..crossing });
+                Some(crossing.t)
+            })
+        };
+        match self.blocks.as_slice() {
+            [only] => search(only, far),
+            blocks => self.tree.closest(ray.origin, ray.direction, far, |i, far| Some(search(&blocks[i], far))),
+        };
         found
     }
 
@@ -147,10 +189,16 @@ impl Mesh {
     #[must_use]
     pub fn is_crossed(&self, ray: &Ray, near: f64, far: f64) -> bool {
         let shear = Shear::new(ray);
-        self.tree.any(ray.origin, ray.direction, far, |triangle| {
-            let [a, b, c] = self.corners(triangle as u32);
-            cross_sheared(&shear, a, b, c, near, far).is_some()
-        })
+        let search = |block: &Block| {
+            block.tree.any(ray.origin, ray.direction, far, |place| {
+                let [a, b, c] = self.corners((block.first + place) as u32);
+                cross_sheared(&shear, a, b, c, near, far).is_some()
+            })
+        };
+        match self.blocks.as_slice() {
+            [only] => search(only),
+            blocks => self.tree.any(ray.origin, ray.direction, far, |i| search(&blocks[i])),
+        }
     }
 
     /// Texture coordinates at the weights `uv` of a triangle's second and third corner; those weights where the mesh has none.
@@ -186,5 +234,38 @@ impl Mesh {
         let determinant = q.x * r.y - q.y * r.x;
         let along = ((b - a) * r.y - (c - a) * q.y) / determinant;
         if along.is_finite() && along != DVec3::ZERO { along } else { b - a }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+
+    #[test]
+    fn blocks_change_nothing_but_the_order() {
+        let mut stream = Stream::new(66, 1);
+        let mut data = MeshData::default();
+        for i in 0..500 {
+            let centre = DVec3::from_array(stream.uniforms());
+            data.positions.extend((0..3).map(|_| centre + 0.1 * DVec3::from_array(stream.uniforms())));
+            data.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+        }
+        let whole = Mesh::new(data.clone()).expect("sound");
+        let cut = Mesh::in_blocks(data, 10).expect("sound");
+        assert_eq!((whole.blocks.len(), cut.blocks.len()), (1, 64));
+        assert_eq!(whole.bounds(), cut.bounds());
+        let mut hits = 0;
+        for _ in 0..1000 {
+            let [origin, aim] = [3.0, 1.0].map(|size| size * DVec3::from_array(stream.uniforms()) - 0.5 * (size - 1.0));
+            let ray = Ray { origin, direction: aim - origin };
+            for far in [f64::INFINITY, 0.7] {
+                let [a, b] = [&whole, &cut].map(|mesh| mesh.closest(&ray, 0.0, far));
+                assert_eq!(a.map(|c| (c.t, whole.corners(c.face))), b.map(|c| (c.t, cut.corners(c.face))));
+                assert_eq!(cut.is_crossed(&ray, 0.0, far), a.is_some());
+                hits += usize::from(a.is_some());
+            }
+        }
+        assert!(hits > 500, "{hits}");
     }
 }

@@ -6,5 +6,6 @@ mod common;
 mod analytic;
 mod cli;
 mod honest;
+mod files;
 mod meshes;
 mod shapes;

@@ -204,3 +204,65 @@ fn instances_are_met_where_their_copies_would_be() {
     }
     assert!(hits > 50, "{hits}");
 }
+
+#[test]
+fn a_mesh_that_shines_draws_its_points_by_area() {
+    // A box of 1 × 2 × 4 has faces of 2, 4 and 8 m², twice each: drawn in these shares, within five standard deviations.
+    let corner = |i: u32| DVec3::new((i & 1).into(), ((i >> 1) & 1).into(), ((i >> 2) & 1).into());
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mesh = MeshData {
+        positions: (0..8).map(corner).collect(),
+        triangles: faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+        ..MeshData::default()
+    };
+    let to_world = DAffine3::from_scale_rotation_translation(
+        DVec3::new(1.0, 2.0, 4.0),
+        DQuat::from_rotation_y(0.3),
+        DVec3::new(5.0, 6.0, 7.0),
+    );
+    let shape = PlacedMesh::new(Arc::new(Mesh::new(mesh).expect("sound")), to_world).expect("regular");
+    assert!((shape.area() - 28.0).abs() < 1e-13);
+    let mut stream = Stream::new(65, 1);
+    let draws = 20_000;
+    let mut counts = [0_u32; 3];
+    let mut mean = DVec3::ZERO;
+    for _ in 0..draws {
+        let point = shape.sample_area(stream.uniforms());
+        let local = to_world.inverse().transform_point3(point.position);
+        let normal = DQuat::from_rotation_y(-0.3) * point.normal;
+        let axis = normal.abs().max_position();
+        counts[axis] += 1;
+        mean += local / f64::from(draws);
+        // On the face, whose outside is away from the middle.
+        assert!((local[axis] - 0.5 * (1.0 + normal[axis].signum())).abs() < 1e-14, "{local} {normal}");
+    }
+    for (count, area) in counts.into_iter().zip([16.0, 8.0, 4.0]) {
+        let share: f64 = area / 28.0;
+        let deviation = (share * (1.0 - share) * f64::from(draws)).sqrt();
+        assert!((f64::from(count) - share * f64::from(draws)).abs() < 5.0 * deviation, "{count} of {draws}, {share}");
+    }
+    assert!((mean - 0.5).abs().max_element() < 5.0 * 0.5 / f64::from(draws).sqrt(), "{mean}");
+}
+
+#[test]
+fn what_is_no_triangle_is_left_out_and_counted() {
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::NAN, 2.0 * DVec3::X];
+    let triangles = vec![[0, 1, 2], [0, 1, 3], [0, 1, 4], [2, 2, 1]];
+    let data = MeshData { positions, triangles, ..MeshData::default() };
+    let mesh = Mesh::new(data.clone()).expect("sound");
+    assert_eq!((mesh.skipped(), mesh.data().triangles.len()), (3, 1));
+    let none = Mesh::new(MeshData { triangles: data.triangles[1..].to_vec(), ..data.clone() }).expect("sound");
+    let ray = Ray { origin: DVec3::new(0.2, 0.2, 1.0), direction: DVec3::NEG_Z };
+    assert!(mesh.is_crossed(&ray, 0.0, 2.0) && !none.is_crossed(&ray, 0.0, 2.0));
+    let surfaces = Surfaces::new(vec![placed(&Arc::new(none), DAffine3::IDENTITY)]);
+    assert!(surfaces.closest(&ray, f64::INFINITY).is_none());
+    let wrong = MeshData { triangles: vec![[0, 1, 5]], ..data.clone() };
+    assert!(
+        Mesh::new(wrong)
+            .expect_err("missing")
+            .to_string()
+            .starts_with("triangle 0 names corner 5; expected one of 0..5")
+    );
+    let wrong = MeshData { uvs: vec![glam::Vec2::ZERO], ..data };
+    assert!(Mesh::new(wrong).expect_err("too few").to_string().starts_with("1 texture coordinates for 5 corners"));
+}
