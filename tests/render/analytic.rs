@@ -45,7 +45,7 @@ fn lambert(reflectance: f64) -> Arc<dyn Material> {
     Arc::new(Opaque::new(Box::new(Lambert::new(vec![reflectance]).expect("a reflectance")), true))
 }
 
-fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) -> Part {
+pub(crate) fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) -> Part {
     Part {
         shape: Arc::new(shape),
         material: lambert(reflectance),
@@ -53,16 +53,16 @@ fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) ->
     }
 }
 
-fn scene(parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Scene {
+pub(crate) fn scene(parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Scene {
     Scene::new(band(), parts, lights)
 }
 
-fn at(position: DVec3, axis: DVec3) -> Place {
+pub(crate) fn at(position: DVec3, axis: DVec3) -> Place {
     Place::Point(SurfacePoint::meter(position, axis, 0.0))
 }
 
 /// What a meter reads, run until its standard error is small enough.
-fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
+pub(crate) fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
     let settings = Settings::new(seed, photopic::render::integrator::path::Limits::default(), 1);
     let meter = Meter { place, response: Response::Planar };
     let mut board = Board::new(scene, &settings, Share::WHOLE, vec![(0, meter)]);
@@ -73,7 +73,7 @@ fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
 }
 
 /// Three standard errors; a figure without scatter is right to rounding.
-fn agrees(figure: Figure, expected: f64, name: &str) {
+pub(crate) fn agrees(figure: Figure, expected: f64, name: &str) {
     let allowed = (3.0 * figure.standard_error).max(1e-12 * expected.abs());
     assert!((figure.value - expected).abs() <= allowed, "{name}: {figure:?}, expected {expected}");
 }

@@ -4,4 +4,5 @@
 mod common;
 
 mod analytic;
+mod lights;
 mod shapes;
