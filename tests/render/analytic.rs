@@ -49,7 +49,7 @@ fn lambert(reflectance: f64) -> Arc<dyn Material> {
     Arc::new(Opaque::new(Box::new(Lambert::new(vec![reflectance]).expect("a reflectance")), true))
 }
 
-fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) -> Part {
+pub(crate) fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) -> Part {
     Part {
         shape: Arc::new(shape),
         material: lambert(reflectance),
@@ -57,16 +57,16 @@ fn part(shape: impl Shape + 'static, reflectance: f64, radiance: Option<f64>) ->
     }
 }
 
-fn scene(parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Scene {
+pub(crate) fn scene(parts: Vec<Part>, lights: Vec<Arc<dyn Light>>) -> Scene {
     Scene::new(band(), parts, lights)
 }
 
-fn at(position: DVec3, axis: DVec3) -> Place {
+pub(crate) fn at(position: DVec3, axis: DVec3) -> Place {
     Place::Point(SurfacePoint::meter(position, axis, 0.0))
 }
 
 /// What a meter reads, run until its standard error is small enough.
-fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
+pub(crate) fn read(scene: &Scene, place: Place, seed: u64) -> Figure {
     read_to(scene, place, seed, PRECISION)
 }
 
@@ -81,7 +81,7 @@ fn read_to(scene: &Scene, place: Place, seed: u64, relative: f64) -> Figure {
 }
 
 /// Three standard errors; a figure without scatter is right to rounding.
-fn agrees(figure: Figure, expected: f64, name: &str) {
+pub(crate) fn agrees(figure: Figure, expected: f64, name: &str) {
     let allowed = (3.0 * figure.standard_error).max(1e-12 * expected.abs());
     assert!((figure.value - expected).abs() <= allowed, "{name}: {figure:?}, expected {expected}");
 }

@@ -8,4 +8,5 @@ mod cli;
 mod honest;
 mod files;
 mod meshes;
+mod lights;
 mod shapes;

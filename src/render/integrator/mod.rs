@@ -6,7 +6,6 @@
 //!
 //! Reference: J. T. Kajiya, *The Rendering Equation*, SIGGRAPH 1986.
 
-pub mod choice;
 pub mod frame;
 pub mod light;
 pub mod path;

@@ -14,8 +14,8 @@
 
 use glam::DVec3;
 
-use super::choice::Choice;
 use super::frame::Frame;
+use crate::render::light::choice::Choice;
 use crate::render::material::{Material, Transport};
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
@@ -85,6 +85,8 @@ impl<'a> PathTracer<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, limits: Limits, heroes: &'a [f64]) -> Self {
         let n = scene.bands().len();
+        let bounds = scene.bounds();
+        let middle = if bounds.is_finite() { 0.5 * (bounds.min + bounds.max) } else { DVec3::ZERO };
         Self {
             scene,
             limits,
@@ -92,7 +94,7 @@ impl<'a> PathTracer<'a> {
             throughput: vec![1.0; n],
             value: vec![0.0; n],
             arriving: vec![0.0; n],
-            choice: Choice::default(),
+            choice: Choice::new(scene.lights(), middle),
             radiance: vec![0.0; n],
             split: false,
             hero: 0,
@@ -112,7 +114,7 @@ impl<'a> PathTracer<'a> {
         let frame = Frame::of(point.normal, point.tangent);
         let [u0, u1, u2, u3] = sampler.four();
         if response.seeks_lights() {
-            self.choice.prepare(self.scene, point.position);
+            self.choice.prepare(self.scene.lights(), point.position);
             self.light(
                 point,
                 [u0, u1, u2, u3],
@@ -206,7 +208,7 @@ impl<'a> PathTracer<'a> {
         let u = sampler.four();
         let seek = !material.is_delta();
         if seek {
-            self.choice.prepare(self.scene, point.position);
+            self.choice.prepare(self.scene.lights(), point.position);
             self.light(point, u, |incident, value| evaluate(material, incident, outgoing, value), &frame);
         }
         if self.limits.follow == Follow::Nothing {
@@ -265,7 +267,8 @@ impl<'a> PathTracer<'a> {
             return;
         }
         let ray = Ray { origin: point.origin_towards(towards.direction), direction: towards.direction };
-        if self.scene.surfaces().is_occluded(&ray, towards.distance, self.scene.surface_of_light(index)) {
+        let ignored = self.scene.surface_of_light(index);
+        if light.casts_shadows() && self.scene.surfaces().is_occluded(&ray, towards.distance, ignored) {
             return;
         }
         let weight = if towards.delta {
