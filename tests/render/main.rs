@@ -5,8 +5,8 @@ mod common;
 
 mod analytic;
 mod cli;
-mod honest;
 mod files;
-mod meshes;
+mod honest;
 mod lights;
+mod meshes;
 mod shapes;
