@@ -13,7 +13,7 @@ const EPOCH: u32 = 1 << 16;
 /// The numbers of one sample of one pixel or instrument.
 #[derive(Debug, Clone)]
 pub struct Sampler {
-    key: [u32; 2],
+    key: u64,
     index: u64,
     group: u32,
 }
@@ -24,7 +24,7 @@ impl Sampler {
     pub fn new(seed: u64, stream: u64, index: u64) -> Self {
         let ([s0, s1], [a, b]) = (words(seed), words(stream));
         let [k0, k1, ..] = philox([s0, s1], [a, b, 0x5A3D_71E5, 0]);
-        Self { key: [k0, k1], index, group: 0 }
+        Self { key: u64::from(k0) | (u64::from(k1) << 32), index, group: 0 }
     }
 
     /// Starts the sample `index` of the same stream.
@@ -35,17 +35,29 @@ impl Sampler {
 
     /// The next group of four numbers, each uniform in [0, 1), in which the samples of a stream are stratified together.
     pub fn four(&mut self) -> [f64; 4] {
-        let epoch = words(self.index / u64::from(EPOCH))[0];
-        // One block of random words keys the group; it does not depend on the sample.
-        let [seed, ..] = philox(self.key, [self.group, epoch, 0, 1]);
+        let epoch = self.index / u64::from(EPOCH);
+        // What scrambles the group does not depend on the sample.
+        let group = mixed(self.key ^ mixed((u64::from(self.group) << 32) | epoch));
         // The index within the epoch is below 2¹⁶ by construction.
         let within = words(self.index % u64::from(EPOCH))[0];
-        let point = sobol_burley::sample_4d(within, 0, seed);
+        let point = sobol_burley::sample_4d(within, 0, words(group)[0]);
         // Points are multiples of 2⁻²⁴: the bits below are filled at random, which keeps the strata and makes the mean exact.
-        let low = philox(self.key, [self.group, words(self.index)[0], words(self.index)[1], 2]);
+        let first = mixed(group ^ self.index);
+        let ([a, b], [c, d]) = (words(first), words(mixed(first)));
         self.group += 1;
+        let low = [a, b, c, d];
         std::array::from_fn(|i| f64::from(point[i]) + f64::from(low[i]) * (1.0 / (16_777_216.0 * 4_294_967_296.0)))
     }
+}
+
+/// A bijection of 64 bits in which every bit of the argument turns half of the result's.
+///
+/// Reference: S. Vigna's SplitMix64, after G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014; mixing constants of D. Stafford.
+fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
 }
 
 /// Low and high word.

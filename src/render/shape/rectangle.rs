@@ -91,16 +91,17 @@ impl Rectangle {
             return None;
         }
         // The planes through the eye and the edges: neighbours' normals share only their third coordinate.
-        let third = |x: f64| x / z.hypot(x);
+        let length = |a: f64, b: f64| (a * a + b * b).sqrt();
+        let third = |x: f64| x / length(z, x);
         let (b0, b1, left) = (third(y0), third(y1), third(x0));
         // 2π less the angles at the two corners on the left.
         let k = TAU - (b1 * left).acos() - (-b0 * left).acos();
         let (sin, cos) = (u * omega + k).sin_cos();
         let f = (-cos * b0 - b1) / sin;
-        let c = f.hypot(b0).recip().copysign(f).clamp(-1.0, 1.0);
+        let c = length(f, b0).recip().copysign(f).clamp(-1.0, 1.0);
         let x = (c * z / (1.0 - c * c).sqrt()).clamp(x0, x1);
-        let d = x.hypot(z);
-        let (h0, h1) = (y0 / d.hypot(y0), y1 / d.hypot(y1));
+        let d = length(x, z);
+        let (h0, h1) = (y0 / length(d, y0), y1 / length(d, y1));
         let h = h0 + v * (h1 - h0);
         let y = (h * d / (1.0 - h * h).sqrt()).clamp(y0, y1);
         (x * axes[0] + y * axes[1] + height * self.facet.normal).try_normalize()
