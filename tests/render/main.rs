@@ -5,3 +5,4 @@ mod common;
 
 mod analytic;
 mod shapes;
+mod slab;

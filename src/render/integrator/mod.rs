@@ -10,3 +10,4 @@ pub mod choice;
 pub mod frame;
 pub mod light;
 pub mod path;
+pub mod polarisation;
