@@ -4,9 +4,9 @@
 //! E(ω) = ∫ f |cosθ'| dω'       Ē = (1/π) ∫ E cosθ dω
 //! ```
 //!
-//! A node is the mean of the sampler's own weights, by adaptive cubature to 1e-4, between nodes cubic: within 5e-4 of E for roughness
-//! from 1e-4 to 1 (tests of [`compensated`](super::compensated)). Nodes lie densely where cosθ is not above the roughness, as E changes
-//! there. What is lost, 1 − E, is a density as well, from which directions are drawn: constant in cos²θ within an eighth of a step.
+//! The table holds 1 − E, which for smooth surfaces is small and must be right relative to itself. A node is the mean of the sampler's
+//! own weights by adaptive cubature, between nodes cubic: within 5e-4 of E for roughness from 1e-4 to 1 (tests of
+//! [`compensated`](super::compensated)). Nodes are even in √ln(1 + cosθ/α), as E changes where cosθ is about the roughness α, and steeply at grazing incidence. What is lost, 1 − E, is a density as well, from which directions are drawn: constant in cos²θ within an eighth of a step.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -16,24 +16,24 @@ use crate::geometry::direction::from_angles;
 use crate::math::cubature::{Tolerance, rectangle};
 
 /// Steps of the table over cosθ, and over a quarter turn where the surface has a grain.
-const STEPS: usize = 32;
+const STEPS: usize = 48;
 const QUARTER: usize = 8;
 
 /// Cells of the density per step.
 const FINE: usize = 8;
 
 /// What the cubature aims at; at grazing incidence the weights have an edge, which it would follow for long.
-const TOLERANCE: Tolerance = Tolerance { absolute: 1e-4, relative: 0.0, evaluations: 30_000 };
+const TOLERANCE: Tolerance = Tolerance { absolute: 1e-7, relative: 1e-3, evaluations: 20_000 };
 
 /// E over the hemisphere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Albedo {
-    /// By azimuth, then by the coordinate of cosθ.
+    /// 1 − E by azimuth, then by the coordinate of cosθ.
     values: Vec<f64>,
     roughness: f64,
     quarter: usize,
     /// Running sums of 1 − E over the cells, (1/π) ∫ (1 − E) cosθ dω up to each.
-    lost: Vec<f64>,
+    sums: Vec<f64>,
 }
 
 impl Albedo {
@@ -43,7 +43,7 @@ impl Albedo {
     #[must_use]
     pub fn tabulate(roughness: f64, isotropic: bool, weight: impl Fn(DVec3, [f64; 2]) -> f64) -> Self {
         let quarter = if isotropic { 0 } else { QUARTER };
-        let mut table = Self { values: Vec::new(), roughness, quarter, lost: Vec::new() };
+        let mut table = Self { values: Vec::new(), roughness, quarter, sums: Vec::new() };
         for azimuth in 0..=quarter {
             let phi = if isotropic { 0.0 } else { FRAC_PI_2 * azimuth as f64 / QUARTER as f64 };
             for step in 0..=STEPS {
@@ -51,34 +51,33 @@ impl Albedo {
                 let cos = table.cosine(step as f64 / STEPS as f64).clamp(1e-7, 1.0);
                 let direction = from_angles(cos.acos(), phi);
                 let mut mean = [0.0];
-                rectangle(|u, v| v[0] = weight(direction, u), [0.0; 2], [1.0; 2], TOLERANCE, &mut mean);
+                rectangle(|u, v| v[0] = 1.0 - weight(direction, u), [0.0; 2], [1.0; 2], TOLERANCE, &mut mean);
                 table.values.push(mean[0].clamp(0.0, 1.0));
             }
         }
         let mut sum = 0.0;
         for cell in 0..STEPS * FINE {
             let [low, high] = table.cell(cell);
-            sum += (high - low) * (1.0 - table.mean_over_azimuths((cell as f64 + 0.5) / FINE as f64));
-            table.lost.push(sum);
+            sum += (high - low) * table.mean_over_azimuths((cell as f64 + 0.5) / FINE as f64);
+            table.sums.push(sum);
         }
         table
     }
 
     /// The cosine at a coordinate from 0 to 1.
     fn cosine(&self, x: f64) -> f64 {
-        let y = x * x;
-        self.roughness * y / (1.0 + self.roughness - y)
+        self.roughness * (x * x * (1.0 / self.roughness).ln_1p()).exp_m1()
     }
 
     /// The place of a cosine in the table, in steps.
     fn coordinate(&self, cos: f64) -> f64 {
         let cos = cos.min(1.0);
-        STEPS as f64 * (cos * (1.0 + self.roughness) / (cos + self.roughness)).sqrt()
+        STEPS as f64 * ((cos / self.roughness).ln_1p() / (1.0 / self.roughness).ln_1p()).sqrt()
     }
 
-    /// E of a direction, on either side of the surface.
+    /// 1 − E of a direction, on either side of the surface.
     #[must_use]
-    pub fn at(&self, direction: DVec3) -> f64 {
+    pub fn lost(&self, direction: DVec3) -> f64 {
         let x = self.coordinate(direction.z.abs());
         if self.quarter == 0 {
             return self.along(0, x);
@@ -109,14 +108,14 @@ impl Albedo {
     /// 1 − Ē.
     #[must_use]
     pub fn average_lost(&self) -> f64 {
-        self.lost[STEPS * FINE - 1]
+        self.sums[STEPS * FINE - 1]
     }
 
     /// A direction above the horizon with density [`Albedo::lost_pdf`], about (1 − E) cosθ / (π (1 − Ē)).
     #[must_use]
     pub fn sample_lost(&self, [u, v]: [f64; 2]) -> DVec3 {
         let target = u * self.average_lost();
-        let cell = self.lost.partition_point(|s| *s <= target).min(STEPS * FINE - 1);
+        let cell = self.sums.partition_point(|s| *s <= target).min(STEPS * FINE - 1);
         let ([low, high], [below, above]) = (self.cell(cell), self.share(cell));
         let cos2 = low + (high - low) * ((target - below) / (above - below)).clamp(0.0, 1.0);
         let (sin, cos) = (TAU * v).sin_cos();
@@ -142,7 +141,7 @@ impl Albedo {
 
     /// The running sums at both ends of a cell.
     fn share(&self, cell: usize) -> [f64; 2] {
-        [if cell == 0 { 0.0 } else { self.lost[cell - 1] }, self.lost[cell]]
+        [if cell == 0 { 0.0 } else { self.sums[cell - 1] }, self.sums[cell]]
     }
 
     /// The first and the last azimuth stand for half a step each.

@@ -127,7 +127,7 @@ impl RoughDielectric {
     fn lost(&self, direction: DVec3) -> [f64; NODES] {
         let mut lost = [0.0; NODES];
         let side = usize::from(direction.z < 0.0);
-        lost.iter_mut().zip(&self.albedos).for_each(|(l, albedos)| *l = 1.0 - albedos[side].at(direction));
+        lost.iter_mut().zip(&self.albedos).for_each(|(l, albedos)| *l = albedos[side].lost(direction));
         lost
     }
 
@@ -153,9 +153,9 @@ impl Again {
         });
         // F̄ from the thinner side, that of the other from it: n_A² (1 − F̄_A) = n_B² (1 − F̄_B); here divided by both n².
         let passed = (1.0 - average(eta.max(1.0 / eta))) / (eta * eta).max(1.0);
-        let kappa = if lost[0].max(lost[1]) > 1e-9 { passed / lost[0].max(lost[1]) } else { 0.0 };
+        let kappa = if lost[0].max(lost[1]) > 1e-12 { passed / lost[0].max(lost[1]) } else { 0.0 };
         let reflects = [1.0 - kappa * eta * eta * lost[1], 1.0 - kappa * lost[0]];
-        let back = [0, 1].map(|side| if lost[side] > 1e-9 { reflects[side] / (PI * lost[side]) } else { 0.0 });
+        let back = [0, 1].map(|side| if lost[side] > 1e-12 { reflects[side] / (PI * lost[side]) } else { 0.0 });
         Self { nodes, reflects, back, through: kappa / PI }
     }
 
