@@ -36,22 +36,86 @@ pub const F0: Parameter = Parameter::spectral("f0", 0.0, 1.0, "reflectance at no
 /// The same at every angle.
 pub const REFLECTANCE: Parameter = Parameter::spectral("reflectance", 0.0, 1.0, "reflectance at every angle");
 
+/// What becomes of polarised light in one lobe: the shares of power of both components, and of what they have in common.
+///
+/// With amplitudes r_s, r_p: R_s = |r_s|², R_p = |r_p|² and r_s r_p* (not the mean of anything: of light at 45° it is what stays
+/// polarised). The signs are those above, with s = k × n and p = k × s for light that travels along k, before and after.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Components {
+    /// Of the component across the plane of incidence.
+    pub s: f64,
+    /// Of the component in the plane of incidence.
+    pub p: f64,
+    /// Real part of r_s r_p*.
+    pub re: f64,
+    /// Imaginary part of r_s r_p*.
+    pub im: f64,
+}
+
+impl Components {
+    /// Of real amplitudes.
+    #[must_use]
+    pub fn of_amplitudes(s: f64, p: f64) -> Self {
+        Self { s: s * s, p: p * p, re: s * p, im: 0.0 }
+    }
+
+    /// Of an ideal mirror: both components alike, left and right exchanged.
+    #[must_use]
+    pub fn of_mirror(reflectance: f64) -> Self {
+        Self { s: reflectance, p: reflectance, re: -reflectance, im: 0.0 }
+    }
+
+    /// What an interface lets through that absorbs nothing and reflects this.
+    #[must_use]
+    pub fn transmitted(&self) -> Self {
+        Self::of_amplitudes((1.0 - self.s).max(0.0).sqrt(), (1.0 - self.p).max(0.0).sqrt())
+    }
+
+    /// The share of unpolarised light.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        0.5 * (self.s + self.p)
+    }
+}
+
+/// Amplitudes of reflection at a dielectric, [r_s, r_p]; `None` under total reflection.
+fn amplitudes(cos: f64, eta: f64) -> Option<[f64; 2]> {
+    let excess = (eta - 1.0) * (eta + 1.0);
+    let g2 = excess + cos * cos;
+    if excess == 0.0 {
+        return Some([0.0; 2]);
+    }
+    if g2 <= 0.0 {
+        return None;
+    }
+    let (g, n2) = (g2.sqrt(), eta * eta);
+    let s = -excess / ((cos + g) * (cos + g));
+    let p = excess * (cos * cos * (n2 + 1.0) - 1.0) / ((n2 * cos + g) * (n2 * cos + g));
+    Some([s, p])
+}
+
 /// Reflectance of a dielectric of index `eta` > 0 relative to the side of the ray, at the cosine of incidence 0 to 1; 1 under
 /// total reflection (`eta` < 1).
 #[must_use]
 pub fn dielectric(cos: f64, eta: f64) -> f64 {
+    amplitudes(cos, eta).map_or(1.0, |[s, p]| (0.5 * (s * s + p * p)).min(1.0))
+}
+
+/// The same for polarised light; under total reflection with the difference of phase between the components.
+#[must_use]
+pub fn dielectric_components(cos: f64, eta: f64) -> Components {
+    if let Some([s, p]) = amplitudes(cos, eta) {
+        return Components::of_amplitudes(s, p);
+    }
+    // g = −iγ: r_s = (c + iγ)/(c − iγ), r_p = (n²c + iγ)/(n²c − iγ), and r_s r_p* = z²/|z|² with z = (c + iγ)(n²c − iγ).
     let excess = (eta - 1.0) * (eta + 1.0);
-    let g2 = excess + cos * cos;
-    if excess == 0.0 {
-        return 0.0;
+    let gamma = (-excess - cos * cos).max(0.0).sqrt();
+    let (a, b) = (eta * eta * cos * cos + gamma * gamma, gamma * cos * excess);
+    let length = a * a + b * b;
+    if length == 0.0 {
+        return Components { s: 1.0, p: 1.0, re: 1.0, im: 0.0 };
     }
-    if g2 <= 0.0 {
-        return 1.0;
-    }
-    let (g, n2) = (g2.sqrt(), eta * eta);
-    let s = excess / ((cos + g) * (cos + g));
-    let p = excess * (cos * cos * (n2 + 1.0) - 1.0) / ((n2 * cos + g) * (n2 * cos + g));
-    (0.5 * (s * s + p * p)).min(1.0)
+    Components { s: 1.0, p: 1.0, re: (a * a - b * b) / length, im: 2.0 * a * b / length }
 }
 
 /// What of a conductor's reflectance does not depend on the angle.
@@ -72,8 +136,12 @@ impl Conductor {
     }
 
     fn reflectance(&self, cos: f64) -> f64 {
+        self.components(cos).mean().min(1.0)
+    }
+
+    fn components(&self, cos: f64) -> Components {
         if self.contrast == 0.0 {
-            return 0.0;
+            return Components::default();
         }
         let c2 = cos * cos;
         let t = self.excess + c2;
@@ -88,7 +156,11 @@ impl Conductor {
         let (below_re, below_im) = ((self.excess + 1.0) * cos + a, self.imaginary * cos + b);
         let below_p = below_re * below_re + below_im * below_im;
         let p = self.contrast * (re * re + im * im) / (below_p * below_p);
-        (0.5 * (s + p)).min(1.0)
+        // r_s r_p* = −|ñ² − 1|² (re + i im)/z² with z = (c + g)(ñ²c + g)*; 1/z² = z*²/|z|⁴.
+        let (x, y) = ((cos + a) * below_re + b * below_im, (cos + a) * below_im - b * below_re);
+        let (z2_re, z2_im) = (x * x - y * y, -2.0 * x * y);
+        let scale = -self.contrast / (below_s * below_s * below_p * below_p);
+        Components { s, p, re: scale * (re * z2_re - im * z2_im), im: scale * (re * z2_im + im * z2_re) }
     }
 }
 
@@ -208,6 +280,19 @@ impl Fresnel {
             Kind::Schlick(f0) => values.iter_mut().zip(f0).for_each(|(v, f)| *v = factor * schlick(cos, *f)),
         }
     }
+
+    /// Writes what polarised light keeps per band, at the cosine of incidence. A reflectance that is only a number or a polynomial
+    /// says nothing of polarisation: it is that of an ideal mirror.
+    pub fn write_components(&self, cos: f64, values: &mut [Components]) {
+        let cos = cos.clamp(0.0, 1.0);
+        let each = values.iter_mut();
+        match &self.0 {
+            Kind::Constant(r) => each.zip(r).for_each(|(v, r)| *v = Components::of_mirror(*r)),
+            Kind::Dielectric(eta) => each.zip(eta).for_each(|(v, n)| *v = dielectric_components(cos, *n)),
+            Kind::Conductor(c) => each.zip(c).for_each(|(v, c)| *v = c.components(cos)),
+            Kind::Schlick(f0) => each.zip(f0).for_each(|(v, f)| *v = Components::of_mirror(schlick(cos, *f))),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -229,6 +314,56 @@ mod tests {
         let (outside, inside) = (0.6_f64, (1.0 - 0.64 / 2.25_f64).sqrt());
         assert!((dielectric(outside, 1.5) - dielectric(inside, 1.0 / 1.5)).abs() < 1e-15);
         assert_eq!((dielectric(0.0, 1.0), conductor(0.0, 1.0, 0.0)), (0.0, 0.0));
+    }
+
+    /// Born & Wolf §1.5.4, eq. (60): tan(δ/2) = cosθ √(sin²θ − n²)/sin²θ, and their example: two total reflections in glass of
+    /// n = 1.51 at 54°37′ or 48°37′ delay one component by 45° each (Fresnel's rhomb).
+    #[test]
+    fn total_reflection_delays_one_component() {
+        let n: f64 = 1.0 / 1.51;
+        for theta_deg in [45.0_f64, 48.0 + 37.0 / 60.0, 54.0 + 37.0 / 60.0, 75.0, 89.0] {
+            let (sin, cos) = theta_deg.to_radians().sin_cos();
+            let half = cos * (sin * sin - n * n).sqrt() / (sin * sin);
+            let c = dielectric_components(cos, n);
+            assert_eq!((c.s, c.p), (1.0, 1.0));
+            assert!((c.re.hypot(c.im) - 1.0).abs() < 1e-14);
+            assert!((c.im.atan2(c.re).abs() - 2.0 * half.atan()).abs() < 1e-13, "{theta_deg}: {c:?}");
+        }
+        for minutes in [54.0 * 60.0 + 37.0, 48.0 * 60.0 + 37.0] {
+            let c = dielectric_components((minutes / 60.0_f64).to_radians().cos(), n);
+            assert!((c.im.atan2(c.re).abs().to_degrees() - 45.0).abs() < 0.02, "{minutes}: {c:?}");
+        }
+    }
+
+    /// r_s r_p* of a metal against the usual formulas in complex numbers, and continuous with those of glass.
+    #[test]
+    fn both_components_of_metals_keep_their_phase() {
+        let mul = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
+        let div = |a: (f64, f64), b: (f64, f64)| {
+            let l = b.0 * b.0 + b.1 * b.1;
+            ((a.0 * b.0 + a.1 * b.1) / l, (a.1 * b.0 - a.0 * b.1) / l)
+        };
+        for (n, k) in [(0.2_f64, 3.0_f64), (1.5, 1e-3), (2.9, 3.0), (1.4, 7.6)] {
+            for theta_deg in [0.0_f64, 30.0, 60.0, 80.0, 89.0] {
+                let (sin, c) = theta_deg.to_radians().sin_cos();
+                let n2 = (n * n - k * k, -2.0 * n * k);
+                let (x, y) = (n2.0 - sin * sin, n2.1);
+                let length = x.hypot(y);
+                let g = ((0.5 * (length + x)).sqrt(), -(0.5 * (length - x)).sqrt());
+                let s = div((c - g.0, -g.1), (c + g.0, g.1));
+                let p = div((n2.0 * c - g.0, n2.1 * c - g.1), (n2.0 * c + g.0, n2.1 * c + g.1));
+                let (re, im) = mul(s, (p.0, -p.1));
+                let got = Conductor::new(n, k).components(c);
+                assert!((got.re - re).abs() < 1e-12 && (got.im - im).abs() < 1e-12, "{n} {k} {theta_deg}: {got:?}");
+                assert!((got.s - s.0 * s.0 - s.1 * s.1).abs() < 1e-12 && (got.p - p.0 * p.0 - p.1 * p.1).abs() < 1e-12);
+            }
+        }
+        for cos in [0.1, 0.5, 0.9] {
+            let (metal, glass) = (Conductor::new(1.5, 0.0).components(cos), dielectric_components(cos, 1.5));
+            assert!((metal.re - glass.re).abs() < 1e-14 && metal.im.abs() < 1e-14, "{metal:?} {glass:?}");
+            let (metal, glass) = (Conductor::new(0.4, 1e-9).components(cos), dielectric_components(cos, 0.4));
+            assert!((metal.re - glass.re).abs() < 1e-7 && (metal.im - glass.im).abs() < 1e-7, "{metal:?} {glass:?}");
+        }
     }
 
     #[test]

@@ -109,6 +109,12 @@ pub trait Brdf: fmt::Debug + Send + Sync {
         reflectance.fill(0.0);
     }
 
+    /// Writes what polarised light keeps in that lobe, per band and up to a factor; `false`: not known, the lobe depolarises.
+    fn polarise(&self, incident: DVec3, components: &mut [fresnel::Components]) -> bool {
+        let _ = (incident, components);
+        false
+    }
+
     /// Draws ω_i for a given ω_o from three uniform numbers in [0, 1): `u[0]` chooses among lobes, `u[1]`, `u[2]` the direction.
     ///
     /// Writes f_r cosθ_i / pdf per band (for a Dirac lobe: reflectance / probability), which is what a path's throughput is

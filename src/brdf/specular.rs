@@ -15,7 +15,7 @@
 
 use glam::DVec3;
 
-use super::fresnel::{ETA, Fresnel, K, MEDIUM, REFLECTANCE};
+use super::fresnel::{Components, ETA, Fresnel, K, MEDIUM, REFLECTANCE};
 use super::parameter::Model;
 use super::{Brdf, Sampled};
 use crate::geometry::direction::mirror;
@@ -81,6 +81,11 @@ impl Brdf for Specular {
 
     fn specular(&self, incident: DVec3, reflectance: &mut [f64]) {
         self.fresnel.write(incident.z, if incident.z > 0.0 { 1.0 } else { 0.0 }, reflectance);
+    }
+
+    fn polarise(&self, incident: DVec3, components: &mut [Components]) -> bool {
+        self.fresnel.write_components(incident.z, components);
+        true
     }
 
     fn sample(&self, outgoing: DVec3, _: [f64; 3], weights: &mut [f64]) -> Option<Sampled> {

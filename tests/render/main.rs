@@ -10,3 +10,4 @@ mod honest;
 mod lights;
 mod meshes;
 mod shapes;
+mod slab;

@@ -200,6 +200,29 @@ impl Microfacet {
         }
         Ok(Self { distribution, masking, fresnel })
     }
+
+    /// The same facets with the same reflectance at every angle, in one band.
+    ///
+    /// # Errors
+    /// [`Error::Range`] for a reflectance that is not from 0 to 1.
+    pub fn with_reflectance(&self, reflectance: f64) -> Result<Self, Error> {
+        Ok(Self { fresnel: Fresnel::constant(vec![reflectance])?, ..self.clone() })
+    }
+
+    /// The interface of the facets.
+    #[must_use]
+    pub fn fresnel(&self) -> &Fresnel {
+        &self.fresnel
+    }
+
+    /// α, the larger one of two, or the α that an exponent is as rough as.
+    #[must_use]
+    pub fn roughness(&self) -> f64 {
+        match self.distribution {
+            Distribution::Ggx([x, y]) | Distribution::Beckmann([x, y]) => x.max(y),
+            Distribution::Blinn(n) => (2.0 / (n + 2.0)).sqrt(),
+        }
+    }
 }
 
 impl Brdf for Microfacet {

@@ -5,6 +5,7 @@
 //! the direction in which they leave) is the visitor's business.
 
 use super::frame::Frame;
+use super::polarisation::Polarisation;
 use crate::math::sampling;
 use crate::render::material::Transport;
 use crate::render::ray::Ray;
@@ -33,6 +34,7 @@ pub struct LightTracer<'a> {
     flux: Vec<f64>,
     before: Vec<f64>,
     weights: Vec<f64>,
+    polarisation: Polarisation,
 }
 
 impl<'a> LightTracer<'a> {
@@ -50,7 +52,15 @@ impl<'a> LightTracer<'a> {
             })
             .collect();
         lights.iter_mut().for_each(|l| *l /= sum);
-        Self { scene, heroes, lights, flux, before: vec![0.0; n], weights: vec![0.0; n] }
+        Self {
+            scene,
+            heroes,
+            lights,
+            flux,
+            before: vec![0.0; n],
+            weights: vec![0.0; n],
+            polarisation: Polarisation::new(n),
+        }
     }
 
     /// Sends one packet through the scene.
@@ -64,8 +74,9 @@ impl<'a> LightTracer<'a> {
         self.flux.iter_mut().for_each(|f| *f /= probability);
         visitor.emitted(&self.flux);
         let start: f64 = self.flux.iter().sum();
-        let hero = self.heroes.partition_point(|&s| s <= hero).min(self.heroes.len() - 1);
+        let mut hero = self.heroes.partition_point(|&s| s <= hero).min(self.heroes.len() - 1);
         let mut split = false;
+        self.polarisation.clear();
         loop {
             let Some((surface, crossing)) = self.scene.surfaces().closest(&ray, f64::INFINITY) else {
                 visitor.flight(&ray, f64::INFINITY, &self.flux);
@@ -78,6 +89,11 @@ impl<'a> LightTracer<'a> {
             self.before.copy_from_slice(&self.flux);
             let [u0, u1, u2, chance] = sampler.four();
             let material = self.scene.material(surface);
+            if material.convert(point.uv, Transport::Flux, &mut self.flux, &mut self.weights) {
+                let [u, ..] = sampler.four();
+                hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
+                split = false;
+            }
             let drawn = material.sample(arriving, [u0, u1, u2], Transport::Flux, hero, &mut self.weights);
             let next = drawn.and_then(|drawn| {
                 let direction = frame.world(drawn.direction);
@@ -89,6 +105,12 @@ impl<'a> LightTracer<'a> {
                 return;
             };
             self.flux.iter_mut().zip(&self.weights).for_each(|(f, w)| *f *= w);
+            if drawn.delta {
+                let components = |c: &mut [_]| material.polarise(arriving, drawn.direction, c);
+                self.polarisation.turn(components, [ray.direction, direction], point.shading, &mut self.flux);
+            } else {
+                self.polarisation.clear();
+            }
             if drawn.split && !split {
                 split = true;
                 let below = if hero == 0 { 0.0 } else { self.heroes[hero - 1] };

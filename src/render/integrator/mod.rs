@@ -9,3 +9,4 @@
 pub mod frame;
 pub mod light;
 pub mod path;
+pub mod polarisation;

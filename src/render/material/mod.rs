@@ -1,8 +1,29 @@
 //! Scattering at a surface, reflection and transmission, for the bands of a render.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | [`opaque`] | any [`Brdf`](crate::brdf::Brdf), on one side or on both |
+//! | [`compensated`], [`albedo`] | rough metal that loses nothing; the table that tells what one scattering loses |
+//! | [`dielectric`], [`rough_dielectric`] | polished and ground glass, water: reflect and refract |
+//! | [`thin_slab`] | a pane without thickness, all reflections inside |
+//! | [`mixture`], [`textured`] | shares of a surface; factors that vary from place to place |
+//! | [`fluorescent`] | a diffuser that changes wavelengths |
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
+use crate::brdf::fresnel::Components;
+
+pub mod albedo;
+pub mod compensated;
+pub mod dielectric;
+pub mod fluorescent;
+pub mod mixture;
 pub mod opaque;
+pub mod rough_dielectric;
+#[cfg(test)]
+mod tests;
+pub mod textured;
+pub mod thin_slab;
 
 /// A direction drawn by [`Material::sample`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +67,38 @@ pub trait Material: std::fmt::Debug + Send + Sync {
         weights: &mut [f64],
     ) -> Option<Scattered>;
 
-    /// Density per solid angle with which [`Material::sample`] draws `incident`, outside of Dirac lobes.
-    fn pdf(&self, outgoing: DVec3, incident: DVec3) -> f64;
+    /// Density per solid angle with which [`Material::sample`] draws `incident`, outside of Dirac lobes, for the same `hero`.
+    fn pdf(&self, outgoing: DVec3, incident: DVec3, hero: usize) -> f64;
+
+    /// What befalls all light at a vertex, whatever its directions, before they are drawn: a texture's factors at `uv`, fluorescence.
+    /// Changes the throughput of the path, with a slice to work in; `true` where bands took over from one another, so that a split path
+    /// carries all of them again.
+    fn convert(&self, uv: DVec2, transport: Transport, throughput: &mut [f64], scratch: &mut [f64]) -> bool {
+        let _ = (uv, transport, throughput, scratch);
+        false
+    }
+
+    /// Whether [`Material::convert`] does anything.
+    fn converts(&self) -> bool {
+        false
+    }
+
+    /// Writes per band, up to a factor, what polarised light keeps in the Dirac lobe between two directions; `false` where that is
+    /// not known, and the lobe depolarises.
+    fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
+        let _ = (outgoing, incident, components);
+        false
+    }
+
+    /// Whether wavelengths go different ways outside of Dirac lobes: a path carries its hero alone from there on.
+    fn splits(&self) -> bool {
+        false
+    }
+
+    /// Whether some of what it scatters is in Dirac lobes.
+    fn has_delta(&self) -> bool {
+        self.is_delta()
+    }
 
     /// Whether all that it scatters is in Dirac lobes (mirrors, polished glass, black): no light is sought for it.
     fn is_delta(&self) -> bool {

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::{Material, Scattered, Transport};
 use crate::brdf::Brdf;
+use crate::brdf::fresnel::Components;
 
 /// An opaque surface.
 pub struct Opaque {
@@ -68,8 +69,16 @@ impl Material for Opaque {
         Some(Scattered { direction, pdf: drawn.pdf, delta: drawn.delta, split: false })
     }
 
-    fn pdf(&self, outgoing: DVec3, incident: DVec3) -> f64 {
+    fn pdf(&self, outgoing: DVec3, incident: DVec3, _hero: usize) -> f64 {
         self.upright(incident, outgoing).map_or(0.0, |(i, o)| self.brdf.pdf(o, i))
+    }
+
+    fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
+        self.upright(incident, outgoing).is_some_and(|(i, _)| self.brdf.polarise(i, components))
+    }
+
+    fn has_delta(&self) -> bool {
+        self.brdf.has_delta()
     }
 
     fn is_delta(&self) -> bool {
