@@ -79,7 +79,7 @@ impl Fluorescent {
             Width::Line => 0.0,
         };
         let photons: f64 = (0..n).map(|o| emission[o] * width(o) * nm[o]).sum();
-        if !(photons > 0.0) {
+        if photons <= 0.0 {
             return Err(Error::Missing { name: "emission", expected: "an emission above 0 in some band".to_owned() });
         }
         let mut matrix = vec![0.0; n * n];
