@@ -116,7 +116,8 @@ impl Mesh {
         let of = |names: &[u32; 3]| Bounds::of(names.map(|corner| positions[corner as usize]));
         let mut blocks = Vec::new();
         let mut boxes = Vec::new();
-        let mut open = vec![0..data.triangles.len()];
+        let mut open = Vec::new();
+        open.push(0..data.triangles.len());
         while let Some(range) = open.pop() {
             let triangles = &mut data.triangles[range.clone()];
             let bounds = triangles.iter().map(of).fold(Bounds::EMPTY, Bounds::union);

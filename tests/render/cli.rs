@@ -137,3 +137,73 @@ fn the_schema_is_json() {
     let schema: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
 }
+
+/// A bright wall seen through a pane at 60° to its normal: the pane lets (1 − R)/(1 + R) through, s and p apart
+/// (`../shared/render/analytic.json`, slab_n1.52_60deg; 0.843 470 671 821 488 by the same formula).
+#[test]
+fn a_pane_in_a_scene_lets_through_what_fresnel_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[[material]]
+name = "glass"
+pane = { index = 1.52 }
+[[shape]]
+name = "pane"
+material = "glass"
+rectangle = { corner = [-2, -2, 0], edges = [[4, 0, 0], [0, 4, 0]] }
+[[shape]]
+name = "wall"
+emission = { radiance = "1000 cd/m2" }
+rectangle = { corner = [-90, -90, -1], edges = [[180, 0, 0], [0, 180, 0]] }
+[[sensor]]
+name = "through"
+luminance = { at = [1.7320508075688772, 0, 1], look_at = [0, 0, 0], acceptance = "0.01 deg" }
+"#;
+    let path = scene(&folder, text);
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "100000"]));
+    let sensor = &out["results"][0]["sensors"][0];
+    let (value, error) =
+        (sensor["value"].as_f64().expect("a number"), sensor["standard_error"].as_f64().expect("a number"));
+    assert!(error < 2.0, "{error}");
+    assert!((value - 843.470_671_821_488).abs() < 3.0 * error, "{value} ± {error}");
+}
+
+/// Every kind of material goes into a scene, and a mixture of those before it.
+#[test]
+fn all_kinds_of_material_are_built() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let kinds = [
+        "reflectance = [[400, 0.2], [700, 0.8]]",
+        "brdf = \"phong(ks=0.3, n=20)\"",
+        "metal = { medium = \"Au\" }",
+        "metal = { medium = \"Cu\", alpha = 0.3 }",
+        "dielectric = { medium = \"SF10\" }",
+        "dielectric = { index = 1.5, alpha = 0.2, outside = 1.33 }",
+        "pane = { medium = \"BK7\", transmittance = 0.9 }",
+        "mixture = [{ material = \"0\", share = 0.5 }, { material = \"3\", share = [[400, 0.1], [700, 0.4]] }]",
+        "dye = { reflectance = 0.1, absorption = [[400, 0.8], [480, 0.1]], emission = [[500, 0], [530, 1], [600, 0]], quantum_yield = 0.9 }",
+        "reflectance = 0.9\ncheckerboard = { even = 1, odd = 0.2, fields = [4, 4] }",
+    ];
+    let mut text = LAMP.to_owned();
+    for (n, kind) in kinds.iter().enumerate() {
+        text.push_str(&format!("[[material]]\nname = \"{n}\"\n{kind}\n[[shape]]\nmaterial = \"{n}\"\nsphere = {{ centre = [{n}, 5, 1], radius = \"0.4 m\" }}\n"));
+    }
+    let path = scene(&folder, &text);
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "2048"]));
+    let sensor = &out["results"][0]["sensors"][0];
+    // The lamp itself gives 250 lx; the balls reflect a little more.
+    let value = sensor["value"].as_f64().expect("a number");
+    assert!(value > 250.0 && value < 300.0, "{value}");
+    assert!(sensor.get("faulty_samples").is_none());
+    for (from, to, message) in [
+        ("medium = \"Au\"", "medium = \"Fe\"", "no substance is called `Fe`"),
+        ("medium = \"SF10\"", "medium = \"Au\"", "no transparent substance"),
+        ("material = \"0\", share", "material = \"8x\", share", "no material is called `8x`"),
+        ("dye = {", "reflectance = 0.1\ndye = {", "has not one kind"),
+        ("ks=0.3", "ks=-0.3", "expected"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let path = scene(&folder, &text.replacen(from, to, 1));
+        photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message));
+    }
+}

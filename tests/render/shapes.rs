@@ -32,8 +32,11 @@ fn rectangle(corner: DVec3, first: DVec3, second: DVec3) -> [Vec<Box<dyn Shape>>
     ]
 }
 
-/// All cases at a scale, the receiver standing at `eye`: name, sources, normal, the case's factor on E/L.
-fn sources(scale: f64, eye: DVec3) -> Vec<(&'static str, Vec<Box<dyn Shape>>, DVec3, f64)> {
+/// Name, sources, normal, the case's factor on E/L.
+type Case = (&'static str, Vec<Box<dyn Shape>>, DVec3, f64);
+
+/// All cases at a scale, the receiver standing at `eye`.
+fn sources(scale: f64, eye: DVec3) -> Vec<Case> {
     let at = |x: f64, y: f64, z: f64| eye + scale * DVec3::new(x, y, z);
     let mut all = Vec::new();
     for (name, d) in [
@@ -62,8 +65,8 @@ fn sources(scale: f64, eye: DVec3) -> Vec<(&'static str, Vec<Box<dyn Shape>>, DV
 fn check(cases: &Value, scale: f64, eye: DVec3, allowed: f64) {
     for (name, shapes, normal, factor) in sources(scale, eye) {
         let expected = cases[name]["value"].as_f64().expect("a number");
-        let of = |s: &Box<dyn Shape>| s.projected_solid_angle(eye, normal).expect("a closed form");
-        let got = factor * shapes.iter().map(of).sum::<f64>();
+        let angles = shapes.iter().map(|s| s.projected_solid_angle(eye, normal).expect("a closed form"));
+        let got = factor * angles.sum::<f64>();
         assert!((got / expected - 1.0).abs() <= allowed, "{name} at {scale}, {eye}: {got}, expected {expected}");
     }
 }

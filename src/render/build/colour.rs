@@ -119,14 +119,7 @@ impl Colours {
             let at = emission.span();
             emissions.push(source.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?);
         }
-        let mut reflectances = Vec::new();
-        for material in &d.material {
-            if let Some(source) = &material.reflectance {
-                reflectances.push(Colour::of(b, source.get_ref(), Edge::Constant, &source.span())?);
-            } else if let Some(brdf) = &material.brdf {
-                reflectances.push(super::surface::colour_of(b, brdf)?);
-            }
-        }
+        let reflectances = super::material::colours(b)?;
         let unique = |mut list: Vec<Colour>| {
             let mut out: Vec<Colour> = Vec::new();
             list.retain(|c| {

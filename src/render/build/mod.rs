@@ -3,6 +3,7 @@
 mod colour;
 mod instrument;
 mod light;
+mod material;
 mod surface;
 
 use std::ops::Range;

@@ -1,18 +1,16 @@
-//! Materials, shapes and what they emit.
+//! Shapes and what they emit.
 
 use std::ops::Range;
-use std::str::FromStr;
 use std::sync::Arc;
 
 use glam::DVec3;
 use toml::Spanned;
 
 use super::colour::{Colour, Edge};
+use super::material::Named;
 use super::{Builder, Quantities};
-use crate::brdf::description::{Bands as BrdfBands, Material as Model};
 use crate::brdf::lambert::Lambert;
-use crate::geometry::direction;
-use crate::render::bands::{Bands, RANGE_NM};
+use crate::render::bands::Bands;
 use crate::render::description::Error;
 use crate::render::description::surface::{Emission as Emitted, Shape as Described};
 use crate::render::emission::Emission;
@@ -27,74 +25,16 @@ use crate::render::shape::plane::Plane;
 use crate::render::shape::polygon::Polygon;
 use crate::render::shape::rectangle::Rectangle;
 use crate::render::shape::sphere::Sphere;
-use crate::spectrum::integrate::Weighting;
 
 /// The surfaces of a shape, or why there are none.
 type Faces = Result<Vec<Arc<dyn Shape>>, ShapeError>;
-
-/// A material by name.
-pub(super) type Named = (String, Arc<dyn Material>);
 
 /// The name of a shape in reports.
 pub(super) fn name(shape: &Described, number: usize) -> String {
     shape.name.as_ref().map_or_else(|| format!("shape {}", number + 1), |n| n.get_ref().clone())
 }
 
-/// A model's place in the scene's text, for errors within a description on one line.
-fn place(b: &Builder<'_>, text: &Spanned<String>, e: &crate::brdf::description::Error) -> Error {
-    let mut out = b.wrong(&text.span(), &e.kind);
-    if e.place.line == 1 {
-        out.column += e.place.column;
-    }
-    out
-}
-
-/// How a described material depends on wavelength, as far as the choice of wavelengths goes: its values for two pairs of directions, one
-/// near the mirror direction and one off it, at 1 nm.
-pub(super) fn colour_of(b: &Builder<'_>, text: &Spanned<String>) -> Result<Colour, Error> {
-    let model = Model::from_str(text.get_ref()).map_err(|e| place(b, text, &e))?;
-    let bands = Bands::uniform(RANGE_NM.0, 1.0);
-    let brdf = model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm())).map_err(|e| place(b, text, &e))?;
-    let mut sum = vec![0.0; bands.len()];
-    let mut values = sum.clone();
-    for (incident, outgoing) in [(0.2, 0.2), (1.0, 0.3)] {
-        let (i, o) = (direction::from_angles(incident, 0.0), direction::from_angles(outgoing, std::f64::consts::PI));
-        brdf.evaluate(i, o, &mut values);
-        let scale = values.iter().copied().fold(0.0, f64::max);
-        if scale > 0.0 {
-            sum.iter_mut().zip(&values).for_each(|(s, v)| *s += v / scale);
-        }
-    }
-    brdf.specular(direction::from_angles(0.2, 0.0), &mut values);
-    sum.iter_mut().zip(&values).for_each(|(s, v)| *s += v);
-    Ok(Colour::Table(Weighting::table(bands.wavelengths_nm().to_vec(), sum), Edge::Constant))
-}
-
 impl Builder<'_> {
-    pub(super) fn materials(&self, bands: &Bands) -> Result<Vec<Named>, Error> {
-        let build = |m: &crate::render::description::Material| {
-            let name = m.name.get_ref().clone();
-            let material: Arc<dyn Material> = match (&m.reflectance, &m.brdf) {
-                (Some(source), None) => {
-                    let values = self.values(source.get_ref(), bands, Edge::Constant, &source.span())?;
-                    let lambert = Lambert::new(values).map_err(|e| self.wrong(&source.span(), e))?;
-                    Arc::new(Opaque::new(Box::new(lambert), !m.one_sided))
-                }
-                (None, Some(text)) => {
-                    let model = Model::from_str(text.get_ref()).map_err(|e| place(self, text, &e))?;
-                    let brdf = model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm()));
-                    Arc::new(Opaque::new(brdf.map_err(|e| place(self, text, &e))?, !m.one_sided))
-                }
-                _ => {
-                    let message = format!("material `{name}` has not one kind; expected one of reflectance, brdf");
-                    return Err(self.wrong(&m.name.span(), message));
-                }
-            };
-            Ok((name, material))
-        };
-        self.description.material.iter().map(build).collect()
-    }
-
     pub(super) fn parts(
         &self,
         materials: &[Named],
@@ -107,18 +47,7 @@ impl Builder<'_> {
         for (number, shape) in self.description.shape.iter().enumerate() {
             let material = match &shape.material {
                 None => Arc::clone(&black),
-                Some(wanted) => {
-                    let found = materials.iter().find(|(name, _)| name == wanted.get_ref());
-                    let (_, material) = found.ok_or_else(|| {
-                        let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
-                        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-                        self.wrong(
-                            &wanted.span(),
-                            format!("no material is called `{}`; expected one of: {known}", wanted.get_ref()),
-                        )
-                    })?;
-                    Arc::clone(material)
-                }
+                Some(wanted) => self.named(materials, wanted)?,
             };
             let faces = self.faces(shape, number)?;
             let area = faces.iter().map(|f| f.area()).sum();

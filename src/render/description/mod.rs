@@ -8,6 +8,7 @@
 //! - A shape, light or sensor is a table with the key of its kind: `sphere = { … }`, `point = { … }`, `illuminance = { … }`.
 
 pub mod light;
+pub mod material;
 pub mod quantity;
 pub mod sensor;
 pub mod spectrum;
@@ -18,9 +19,9 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use light::Light;
+use material::Material;
 use sensor::Sensor;
 use spectrum::SpectrumSource;
 use surface::Shape;
@@ -100,26 +101,6 @@ pub enum Solver {
     Whitted,
     /// Direct light.
     Direct,
-}
-
-/// A material; one of the kinds.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Material {
-    /// Its name, which shapes refer to.
-    #[schemars(with = "String")]
-    pub name: Spanned<String>,
-    /// Diffuse (Lambertian) with this reflectance, 0 to 1.
-    #[serde(default)]
-    #[schemars(with = "Option<SpectrumSource>")]
-    pub reflectance: Option<Spanned<SpectrumSource>>,
-    /// A description as of `photopic brdf`: `"ggx(alpha=0.1, medium=Au)"`.
-    #[serde(default)]
-    #[schemars(with = "Option<String>")]
-    pub brdf: Option<Spanned<String>>,
-    /// Dark from the inside of shapes; otherwise both sides are alike.
-    #[serde(default)]
-    pub one_sided: bool,
 }
 
 /// What is wrong with a scene, and where.

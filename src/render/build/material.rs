@@ -1,0 +1,251 @@
+//! Materials, prepared for the bands.
+
+use std::ops::Range;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use toml::Spanned;
+
+use super::Builder;
+use super::colour::{Colour, Edge};
+use crate::brdf::Brdf;
+use crate::brdf::description::{Bands as BrdfBands, Material as Model};
+use crate::brdf::fresnel::Fresnel;
+use crate::brdf::lambert::Lambert;
+use crate::brdf::medium::refractive_index;
+use crate::brdf::microfacet::{Distribution, Masking, Microfacet};
+use crate::brdf::specular::Specular;
+use crate::geometry::direction;
+use crate::render::bands::{Bands, RANGE_NM};
+use crate::render::description::Error;
+use crate::render::description::material::{
+    Checkerboard as Fields, Dielectric as Glass, Material as Described, Metal, Pane,
+};
+use crate::render::description::spectrum::SpectrumSource;
+use crate::render::material::Material;
+use crate::render::material::compensated::Compensated;
+use crate::render::material::dielectric::Dielectric;
+use crate::render::material::fluorescent::Fluorescent;
+use crate::render::material::mixture::Mixture;
+use crate::render::material::opaque::Opaque;
+use crate::render::material::rough_dielectric::RoughDielectric;
+use crate::render::material::textured::{Checkerboard, Textured};
+use crate::render::material::thin_slab::ThinSlab;
+use crate::spectrum::integrate::Weighting;
+
+/// A material by name.
+pub(super) type Named = (String, Arc<dyn Material>);
+
+/// A model's place in the scene's text, for errors within a description on one line.
+fn place(b: &Builder<'_>, text: &Spanned<String>, e: &crate::brdf::description::Error) -> Error {
+    let mut out = b.wrong(&text.span(), &e.kind);
+    if e.place.line == 1 {
+        out.column += e.place.column;
+    }
+    out
+}
+
+impl Builder<'_> {
+    pub(super) fn materials(&self, bands: &Bands) -> Result<Vec<Named>, Error> {
+        let mut done: Vec<Named> = Vec::new();
+        for m in &self.description.material {
+            let mut material = self.material(m, bands, &done)?;
+            if let Some(fields) = &m.checkerboard {
+                let board = self.checkerboard(fields.get_ref(), bands, &fields.span())?;
+                material = Arc::new(Textured::new(material, Box::new(board)));
+            }
+            done.push((m.name.get_ref().clone(), material));
+        }
+        Ok(done)
+    }
+
+    fn material(&self, m: &Described, bands: &Bands, done: &[Named]) -> Result<Arc<dyn Material>, Error> {
+        let mut kinds: Vec<Arc<dyn Material>> = Vec::new();
+        if let Some(source) = &m.reflectance {
+            let values = self.values(source.get_ref(), bands, Edge::Constant, &source.span())?;
+            let lambert = Lambert::new(values).map_err(|e| self.wrong(&source.span(), e))?;
+            kinds.push(Arc::new(Opaque::new(Box::new(lambert), !m.one_sided)));
+        }
+        if let Some(text) = &m.brdf {
+            let brdf = self.model(text, bands)?;
+            kinds.push(Arc::new(Opaque::new(brdf, !m.one_sided)));
+        }
+        if let Some(metal) = &m.metal {
+            kinds.push(self.metal(metal.get_ref(), bands, &metal.span())?);
+        }
+        if let Some(glass) = &m.dielectric {
+            kinds.push(self.dielectric(glass.get_ref(), bands, &glass.span())?);
+        }
+        if let Some(pane) = &m.pane {
+            kinds.push(self.pane(pane.get_ref(), bands, &pane.span())?);
+        }
+        if let Some(parts) = &m.mixture {
+            let part = |share: &crate::render::description::material::Share| {
+                let values = self.values(&share.share, bands, Edge::Constant, &parts.span())?;
+                Ok((values, self.named(done, &share.material)?))
+            };
+            let parts_built = parts.get_ref().iter().map(part).collect::<Result<Vec<_>, Error>>()?;
+            kinds.push(Arc::new(Mixture::new(parts_built).map_err(|e| self.wrong(&parts.span(), e))?));
+        }
+        if let Some(dye) = &m.dye {
+            let (d, span) = (dye.get_ref(), dye.span());
+            let of = |source, edge| self.values(source, bands, edge, &span);
+            let (reflectance, absorption) = (of(&d.reflectance, Edge::Constant)?, of(&d.absorption, Edge::Dark)?);
+            let emission = of(&d.emission, Edge::Dark)?;
+            let made = Fluorescent::dye(bands, &reflectance, &absorption, &emission, d.quantum_yield, !m.one_sided);
+            kinds.push(Arc::new(made.map_err(|e| self.wrong(&span, e))?));
+        }
+        let mut kinds = kinds.into_iter();
+        let (Some(material), None) = (kinds.next(), kinds.next()) else {
+            let message = format!(
+                "material `{}` has not one kind; expected one of reflectance, brdf, metal, dielectric, pane, mixture, dye",
+                m.name.get_ref()
+            );
+            return Err(self.wrong(&m.name.span(), message));
+        };
+        Ok(material)
+    }
+
+    /// The material of a name, among those that are there already.
+    pub(super) fn named(&self, materials: &[Named], wanted: &Spanned<String>) -> Result<Arc<dyn Material>, Error> {
+        let found = materials.iter().find(|(name, _)| name == wanted.get_ref());
+        let (_, material) = found.ok_or_else(|| {
+            let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            let message = format!("no material is called `{}`; expected one of: {known}", wanted.get_ref());
+            self.wrong(&wanted.span(), message)
+        })?;
+        Ok(Arc::clone(material))
+    }
+
+    fn model(&self, text: &Spanned<String>, bands: &Bands) -> Result<Box<dyn Brdf>, Error> {
+        let model = Model::from_str(text.get_ref()).map_err(|e| place(self, text, &e))?;
+        model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm())).map_err(|e| place(self, text, &e))
+    }
+
+    fn metal(&self, metal: &Metal, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
+        let (n, k) = refractive_index(&metal.medium, bands.wavelengths_nm()).map_err(|e| self.wrong(at, e))?;
+        let fresnel = Fresnel::conductor(&n, &k).map_err(|e| self.wrong(at, e))?;
+        Ok(match metal.alpha {
+            None => Arc::new(Opaque::new(Box::new(Specular::new(fresnel)), true)),
+            Some(alpha) => {
+                let facets = Microfacet::new(Distribution::Ggx([alpha; 2]), Masking::Smith, fresnel);
+                let facets = facets.map_err(|e| self.wrong(at, e))?;
+                let facets = Compensated::new(facets).map_err(|e| self.wrong(at, e))?;
+                Arc::new(Opaque::new(Box::new(facets), true))
+            }
+        })
+    }
+
+    /// The index of a substance, by name or by value.
+    fn index(
+        &self,
+        medium: Option<&String>,
+        index: Option<&SpectrumSource>,
+        bands: &Bands,
+        at: &Range<usize>,
+    ) -> Result<Vec<f64>, Error> {
+        match (medium, index) {
+            (Some(name), None) => {
+                let (n, k) = refractive_index(name, bands.wavelengths_nm()).map_err(|e| self.wrong(at, e))?;
+                if k.iter().any(|k| *k > 0.0) {
+                    return Err(self.wrong(
+                        at,
+                        format!("`{name}` is no transparent substance; expected BK7, SF10, water, or an index"),
+                    ));
+                }
+                Ok(n)
+            }
+            (None, Some(source)) => self.values(source, bands, Edge::Constant, at),
+            _ => Err(self.wrong(at, "both or neither of `medium` and `index`; expected one of them")),
+        }
+    }
+
+    fn dielectric(&self, glass: &Glass, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
+        let inside = self.index(glass.medium.as_ref(), glass.index.as_ref(), bands, at)?;
+        let outside =
+            glass.outside.as_ref().map_or(Ok(vec![1.0; bands.len()]), |s| self.values(s, bands, Edge::Constant, at))?;
+        Ok(match glass.alpha {
+            None => Arc::new(Dielectric::new(&outside, &inside).map_err(|e| self.wrong(at, e))?),
+            Some(alpha) => {
+                Arc::new(RoughDielectric::new([alpha; 2], &outside, &inside).map_err(|e| self.wrong(at, e))?)
+            }
+        })
+    }
+
+    fn pane(&self, pane: &Pane, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
+        let index = self.index(pane.medium.as_ref(), pane.index.as_ref(), bands, at)?;
+        let one = SpectrumSource::Constant(1.0);
+        let passed = self.values(pane.transmittance.as_ref().unwrap_or(&one), bands, Edge::Constant, at)?;
+        Ok(Arc::new(ThinSlab::new(&index, &passed).map_err(|e| self.wrong(at, e))?))
+    }
+
+    fn checkerboard(&self, fields: &Fields, bands: &Bands, at: &Range<usize>) -> Result<Checkerboard, Error> {
+        let of = |source| self.values(source, bands, Edge::Constant, at);
+        Checkerboard::new(of(&fields.even)?, of(&fields.odd)?, fields.fields).map_err(|e| self.wrong(at, e))
+    }
+}
+
+/// How the materials depend on wavelength, as far as the choice of wavelengths goes.
+pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
+    let mut out = Vec::new();
+    let mut add = |source: &SpectrumSource, at: &Range<usize>| {
+        out.push(Colour::of(b, source, Edge::Constant, at)?);
+        Ok(())
+    };
+    for m in &b.description.material {
+        if let Some(source) = &m.reflectance {
+            add(source.get_ref(), &source.span())?;
+        }
+        if let Some(board) = &m.checkerboard {
+            add(&board.get_ref().even, &board.span())?;
+            add(&board.get_ref().odd, &board.span())?;
+        }
+        if let Some(pane) = &m.pane
+            && let Some(source) = &pane.get_ref().transmittance
+        {
+            add(source, &pane.span())?;
+        }
+        if let Some(parts) = &m.mixture {
+            parts.get_ref().iter().try_for_each(|p| add(&p.share, &parts.span()))?;
+        }
+        if let Some(dye) = &m.dye {
+            let d = dye.get_ref();
+            [&d.reflectance, &d.absorption, &d.emission].into_iter().try_for_each(|s| add(s, &dye.span()))?;
+        }
+    }
+    for m in &b.description.material {
+        if let Some(text) = &m.brdf {
+            out.push(colour_of(b, text)?);
+        }
+        if let Some(metal) = &m.metal {
+            let bands = Bands::uniform(RANGE_NM.0, 1.0);
+            let at = metal.span();
+            let (n, k) =
+                refractive_index(&metal.get_ref().medium, bands.wavelengths_nm()).map_err(|e| b.wrong(&at, e))?;
+            let mut values = vec![0.0; bands.len()];
+            Fresnel::conductor(&n, &k).map_err(|e| b.wrong(&at, e))?.write(1.0, 1.0, &mut values);
+            out.push(Colour::Table(Weighting::table(bands.wavelengths_nm().to_vec(), values), Edge::Constant));
+        }
+    }
+    Ok(out)
+}
+
+/// A described BRDF's values for two pairs of directions, one near the mirror direction and one off it, and its mirror's, at 1 nm.
+fn colour_of(b: &Builder<'_>, text: &Spanned<String>) -> Result<Colour, Error> {
+    let bands = Bands::uniform(RANGE_NM.0, 1.0);
+    let brdf = b.model(text, &bands)?;
+    let mut sum = vec![0.0; bands.len()];
+    let mut values = sum.clone();
+    for (incident, outgoing) in [(0.2, 0.2), (1.0, 0.3)] {
+        let (i, o) = (direction::from_angles(incident, 0.0), direction::from_angles(outgoing, std::f64::consts::PI));
+        brdf.evaluate(i, o, &mut values);
+        let scale = values.iter().copied().fold(0.0, f64::max);
+        if scale > 0.0 {
+            sum.iter_mut().zip(&values).for_each(|(s, v)| *s += v / scale);
+        }
+    }
+    brdf.specular(direction::from_angles(0.2, 0.0), &mut values);
+    sum.iter_mut().zip(&values).for_each(|(s, v)| *s += v);
+    Ok(Colour::Table(Weighting::table(bands.wavelengths_nm().to_vec(), sum), Edge::Constant))
+}

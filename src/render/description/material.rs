@@ -1,0 +1,132 @@
+//! Materials of a scene.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::spectrum::SpectrumSource;
+
+/// A material; one of the kinds.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Its name, which shapes and mixtures refer to.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// Diffuse (Lambertian) with this reflectance, 0 to 1.
+    #[serde(default)]
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub reflectance: Option<Spanned<SpectrumSource>>,
+    /// A description as of `photopic brdf`: `"ggx(alpha=0.1, medium=Au)"`. What rough facets lose is lost.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub brdf: Option<Spanned<String>>,
+    /// Metal, polished or rough; light that is scattered several times among its facets is kept.
+    #[serde(default)]
+    #[schemars(with = "Option<Metal>")]
+    pub metal: Option<Spanned<Metal>>,
+    /// A surface between two transparent substances: the substance is on the inside of the shape.
+    #[serde(default)]
+    #[schemars(with = "Option<Dielectric>")]
+    pub dielectric: Option<Spanned<Dielectric>>,
+    /// A pane of glass without thickness, with all reflections between its faces.
+    #[serde(default)]
+    #[schemars(with = "Option<Pane>")]
+    pub pane: Option<Spanned<Pane>>,
+    /// Shares of other materials, which stand before it.
+    #[serde(default)]
+    #[schemars(with = "Option<Vec<Share>>")]
+    pub mixture: Option<Spanned<Vec<Share>>>,
+    /// A fluorescent diffuser.
+    #[serde(default)]
+    #[schemars(with = "Option<Dye>")]
+    pub dye: Option<Spanned<Dye>>,
+    /// Fields like those of a chessboard, whose factors multiply what the material scatters.
+    #[serde(default)]
+    #[schemars(with = "Option<Checkerboard>")]
+    pub checkerboard: Option<Spanned<Checkerboard>>,
+    /// Dark from the inside of shapes (reflectance, brdf, dye); otherwise both sides are alike.
+    #[serde(default)]
+    pub one_sided: bool,
+}
+
+/// Metal.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Metal {
+    /// Its name: Ag, Al, Au, Cu.
+    pub medium: String,
+    /// Roughness of its facets (GGX), 1e-6 to 1; polished without it.
+    #[serde(default)]
+    pub alpha: Option<f64>,
+}
+
+/// A transparent substance: by name or by its refractive index.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Dielectric {
+    /// Its name: BK7, SF10, water.
+    #[serde(default)]
+    pub medium: Option<String>,
+    /// Its refractive index.
+    #[serde(default)]
+    pub index: Option<SpectrumSource>,
+    /// The index of what is outside; 1 without it.
+    #[serde(default)]
+    pub outside: Option<SpectrumSource>,
+    /// Roughness of its facets (GGX); polished without it.
+    #[serde(default)]
+    pub alpha: Option<f64>,
+}
+
+/// A pane.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pane {
+    /// The name of its substance: BK7, SF10, water.
+    #[serde(default)]
+    pub medium: Option<String>,
+    /// Its refractive index.
+    #[serde(default)]
+    pub index: Option<SpectrumSource>,
+    /// Internal transmittance along the normal; 1 without it.
+    #[serde(default)]
+    pub transmittance: Option<SpectrumSource>,
+}
+
+/// A material's share of a mixture.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Share {
+    /// Its name.
+    #[schemars(with = "String")]
+    pub material: Spanned<String>,
+    /// Its share, 0 to 1; all of them at most 1.
+    pub share: SpectrumSource,
+}
+
+/// A fluorescent diffuser with one dye.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Dye {
+    /// Reflectance without the dye's light.
+    pub reflectance: SpectrumSource,
+    /// Share of the light that the dye absorbs.
+    pub absorption: SpectrumSource,
+    /// Its emission spectrum, relative, in power per nm.
+    pub emission: SpectrumSource,
+    /// Photons emitted per photon absorbed, 0 to 1.
+    pub quantum_yield: f64,
+}
+
+/// A chessboard.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Checkerboard {
+    /// Factor of the field at the shape's origin, 0 to 1.
+    pub even: SpectrumSource,
+    /// Factor of its neighbours, 0 to 1.
+    pub odd: SpectrumSource,
+    /// Fields along both texture coordinates.
+    pub fields: [u32; 2],
+}
