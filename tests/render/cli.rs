@@ -177,7 +177,9 @@ fn all_kinds_of_material_are_built() {
         "brdf = \"phong(ks=0.3, n=20)\"",
         "metal = { medium = \"Au\" }",
         "metal = { medium = \"Cu\", alpha = 0.3 }",
-        "dielectric = { medium = \"SF10\" }",
+        "dielectric = { medium = \"BK7\" }",
+        "dielectric = { sellmeier = { b = [1.62153902, 0.256287842, 1.64447552], c_um2 = [0.0122241457, 0.0595736775, 147.468793] } }",
+        "dielectric = { cauchy = [1.458, 0.00354, 0] }",
         "dielectric = { index = 1.5, alpha = 0.2, outside = 1.33 }",
         "pane = { medium = \"BK7\", transmittance = 0.9 }",
         "mixture = [{ material = \"0\", share = 0.5 }, { material = \"3\", share = [[400, 0.1], [700, 0.4]] }]",
@@ -197,7 +199,8 @@ fn all_kinds_of_material_are_built() {
     assert!(sensor.get("faulty_samples").is_none());
     for (from, to, message) in [
         ("medium = \"Au\"", "medium = \"Fe\"", "no substance is called `Fe`"),
-        ("medium = \"SF10\"", "medium = \"Au\"", "no transparent substance"),
+        ("{ medium = \"BK7\" }", "{ medium = \"Au\" }", "no transparent substance"),
+        ("{ cauchy = [1.458, 0.00354, 0] }", "{ medium = \"SF10\" }", "is known from 380 to 2500 nm"),
         ("material = \"0\", share", "material = \"8x\", share", "no material is called `8x`"),
         ("dye = {", "reflectance = 0.1\ndye = {", "has not one kind"),
         ("ks=0.3", "ks=-0.3", "expected"),

@@ -137,32 +137,30 @@ impl Builder<'_> {
         })
     }
 
-    /// The index of a substance, by name or by value.
-    fn index(
-        &self,
-        medium: Option<&String>,
-        index: Option<&SpectrumSource>,
-        bands: &Bands,
-        at: &Range<usize>,
-    ) -> Result<Vec<f64>, Error> {
-        match (medium, index) {
-            (Some(name), None) => {
-                let (n, k) = refractive_index(name, bands.wavelengths_nm()).map_err(|e| self.wrong(at, e))?;
-                if k.iter().any(|k| *k > 0.0) {
-                    return Err(self.wrong(
-                        at,
-                        format!("`{name}` is no transparent substance; expected BK7, SF10, water, or an index"),
-                    ));
-                }
-                Ok(n)
-            }
-            (None, Some(source)) => self.values(source, bands, Edge::Constant, at),
-            _ => Err(self.wrong(at, "both or neither of `medium` and `index`; expected one of them")),
+    /// The index of a substance by name.
+    fn medium(&self, name: &str, bands: &Bands, at: &Range<usize>) -> Result<Vec<f64>, Error> {
+        let (n, k) = refractive_index(name, bands.wavelengths_nm()).map_err(|e| self.wrong(at, e))?;
+        if k.iter().any(|k| *k > 0.0) {
+            let message = format!("`{name}` is no transparent substance; expected BK7, SF10, water, or an index");
+            return Err(self.wrong(at, message));
         }
+        Ok(n)
     }
 
     fn dielectric(&self, glass: &Glass, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
-        let inside = self.index(glass.medium.as_ref(), glass.index.as_ref(), bands, at)?;
+        let inside = match (&glass.medium, &glass.index, &glass.sellmeier, glass.cauchy) {
+            (Some(name), None, None, None) => self.medium(name, bands, at)?,
+            (None, Some(source), None, None) => self.values(source, bands, Edge::Constant, at)?,
+            (None, None, Some(terms), None) if terms.b.len() == terms.c_um2.len() => by_formula(bands, |l2| {
+                let sum: f64 = terms.b.iter().zip(&terms.c_um2).map(|(b, c)| b * l2 / (l2 - c)).sum();
+                (1.0 + sum).sqrt()
+            }),
+            (None, None, None, Some([a, b, c])) => by_formula(bands, |l2| a + b / l2 + c / (l2 * l2)),
+            _ => {
+                let message = "not one index; expected one of medium, index, sellmeier (as many b as c_um2), cauchy";
+                return Err(self.wrong(at, message));
+            }
+        };
         let outside =
             glass.outside.as_ref().map_or(Ok(vec![1.0; bands.len()]), |s| self.values(s, bands, Edge::Constant, at))?;
         Ok(match glass.alpha {
@@ -174,7 +172,11 @@ impl Builder<'_> {
     }
 
     fn pane(&self, pane: &Pane, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
-        let index = self.index(pane.medium.as_ref(), pane.index.as_ref(), bands, at)?;
+        let index = match (&pane.medium, &pane.index) {
+            (Some(name), None) => self.medium(name, bands, at)?,
+            (None, Some(source)) => self.values(source, bands, Edge::Constant, at)?,
+            _ => return Err(self.wrong(at, "both or neither of `medium` and `index`; expected one of them")),
+        };
         let one = SpectrumSource::Constant(1.0);
         let passed = self.values(pane.transmittance.as_ref().unwrap_or(&one), bands, Edge::Constant, at)?;
         Ok(Arc::new(ThinSlab::new(&index, &passed).map_err(|e| self.wrong(at, e))?))
@@ -184,6 +186,11 @@ impl Builder<'_> {
         let of = |source| self.values(source, bands, Edge::Constant, at);
         Checkerboard::new(of(&fields.even)?, of(&fields.odd)?, fields.fields).map_err(|e| self.wrong(at, e))
     }
+}
+
+/// An index at the bands by a formula of λ², µm².
+fn by_formula(bands: &Bands, formula: impl Fn(f64) -> f64) -> Vec<f64> {
+    bands.wavelengths_nm().iter().map(|nm| formula((1e-3 * nm) * (1e-3 * nm))).collect()
 }
 
 /// How the materials depend on wavelength, as far as the choice of wavelengths goes.

@@ -61,7 +61,7 @@ pub struct Metal {
     pub alpha: Option<f64>,
 }
 
-/// A transparent substance: by name or by its refractive index.
+/// A transparent substance; one of the ways to say its refractive index.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dielectric {
@@ -71,6 +71,12 @@ pub struct Dielectric {
     /// Its refractive index.
     #[serde(default)]
     pub index: Option<SpectrumSource>,
+    /// Sellmeier's formula: n² = 1 + Σ b λ²/(λ² − c), λ in µm.
+    #[serde(default)]
+    pub sellmeier: Option<Sellmeier>,
+    /// Cauchy's formula: n = A + B/λ² + C/λ⁴, λ in µm.
+    #[serde(default)]
+    pub cauchy: Option<[f64; 3]>,
     /// The index of what is outside; 1 without it.
     #[serde(default)]
     pub outside: Option<SpectrumSource>,
@@ -79,7 +85,17 @@ pub struct Dielectric {
     pub alpha: Option<f64>,
 }
 
-/// A pane.
+/// The terms of Sellmeier's formula.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sellmeier {
+    /// b of every term.
+    pub b: Vec<f64>,
+    /// c of every term, µm².
+    pub c_um2: Vec<f64>,
+}
+
+/// A pane; one of the ways to say its refractive index.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pane {
