@@ -55,6 +55,8 @@ enum Command {
     Brdf(brdf::BrdfCommand),
     /// A scene (TOML) into readings of virtual instruments with their standard errors, and spectral pictures.
     Render(Box<render::RenderArgs>),
+    /// Parts of a render (`render --shard`) into its readings and pictures.
+    Merge(render::MergeArgs),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -110,6 +112,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Lamp(command) => lamp::run(command, cli.talk),
         Command::Brdf(command) => brdf::run(command, cli.talk),
         Command::Render(arguments) => render::run(&arguments, cli.talk),
+        Command::Merge(arguments) => render::merge(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

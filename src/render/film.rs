@@ -129,6 +129,23 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         Noise { pixels: 1, luminance: mean, variance, faults }
     }
 
+    /// Renders whole rows: the noise and the samples of all channels, one behind the other, of each. What [`Film::noise`] says stays.
+    #[must_use]
+    pub fn rows(&self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
+        let channels: Vec<usize> = (0..self.description.channels.len()).collect();
+        rows.par_iter()
+            .map_init(
+                || PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes),
+                |tracer, &y| {
+                    let region = Region::rows(&self.description, y, 1);
+                    let mut samples = vec![0.0; region.width * channels.len()];
+                    let noise = self.row(tracer, region, y, &channels, &mut samples);
+                    (noise, samples)
+                },
+            )
+            .collect()
+    }
+
     fn row(&self, tracer: &mut PathTracer<'_>, region: Region, y: usize, channels: &[usize], out: &mut [f32]) -> Noise {
         let mut values = vec![0.0; self.description.channels.len()];
         let mut noise = Noise::default();
@@ -150,7 +167,8 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
 }
 
 impl Noise {
-    fn append(&mut self, later: &Self) {
+    /// Adds that of the rows below.
+    pub fn append(&mut self, later: &Self) {
         self.pixels += later.pixels;
         self.luminance += later.luminance;
         self.variance += later.variance;

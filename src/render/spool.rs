@@ -60,11 +60,26 @@ pub struct Extent {
     pub channels: usize,
 }
 
+/// What was to be rendered.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Task {
+    /// The scene's file.
+    pub scene: String,
+    /// Samples of a pixel.
+    pub samples: u64,
+    /// Samples of a meter.
+    pub meter_samples: u64,
+    /// Names all random numbers.
+    pub seed: u64,
+}
+
 /// What a file holds.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
     /// A checksum of the scene, the settings and the version: parts of one render have the same.
     pub fingerprint: String,
+    /// The scene's file and how it is sampled, as asked for.
+    pub task: Task,
     /// The share that the file holds.
     pub share: Share,
     /// Meter points.
@@ -305,6 +320,7 @@ mod tests {
     fn header() -> Header {
         Header {
             fingerprint: "abc".to_owned(),
+            task: Task { scene: "room.toml".to_owned(), samples: 4, meter_samples: 100, seed: 1 },
             share: Share { index: 1, count: 3 },
             points: 2,
             bands: 2,

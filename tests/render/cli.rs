@@ -210,3 +210,65 @@ fn all_kinds_of_material_are_built() {
         photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message));
     }
 }
+
+/// One run, a run that goes on from a torn state, and three shares that are joined: the same readings and the same picture, bit for bit.
+#[test]
+fn breaks_and_shares_change_no_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = format!(
+        "{LAMP}{}",
+        r#"
+[[material]]
+name = "white"
+reflectance = 0.8
+[[shape]]
+material = "white"
+box = { from = [-2, -2, 0], to = [2, 2, 3], inwards = true }
+[[sensor]]
+name = "view"
+camera = { at = [-1, -1, 1], look_at = [1, 1, 1], resolution = [9, 7], exr = "view.exr" }
+"#
+    );
+    let path = scene(&folder, &text);
+    let command = |more: &[&str]| {
+        let mut command = photopic();
+        command
+            .current_dir(folder.path())
+            .args(["render", "scene.toml", "--samples", "3", "--meter-samples", "640"])
+            .args(more);
+        command
+    };
+    let told = |mut command: Command| {
+        let out = json(&mut command);
+        (out["results"][0]["sensors"].clone(), std::fs::read(folder.path().join("view.exr")).expect("the picture"))
+    };
+    let whole = told(command(&["--json"]));
+    let kept = told(command(&["--json", "--checkpoint", "a.state"]));
+    assert!(whole == kept, "a state changes the result");
+    // A break tears the state: a tenth of its bytes are lost.
+    let state = folder.path().join("a.state");
+    let mut bytes = std::fs::read(&state).expect("the state");
+    let begin = bytes.len() / 2;
+    let end = begin + bytes.len() / 10;
+    bytes[begin..end].fill(0);
+    std::fs::write(&state, bytes).expect("written");
+    assert!(whole == told(command(&["--json", "--resume", "a.state"])), "going on changes the result");
+    for n in ["1", "2", "3"] {
+        command(&["--shard", &format!("{n}/3"), "-o", &format!("{n}.shard")]).assert().success().stdout("");
+    }
+    let merge = |shards: &[&str]| {
+        let mut command = photopic();
+        command.current_dir(folder.path()).args(["merge", "--json"]).args(shards);
+        command
+    };
+    assert!(whole == told(merge(&["3.shard", "1.shard", "2.shard"])), "joining changes the result");
+    merge(&["1.shard", "2.shard"]).assert().code(2).stderr(contains("the shares 3/3 are missing"));
+    merge(&["1.shard", "1.shard"]).assert().code(2).stderr(contains("twice"));
+    merge(&["scene.toml"]).assert().code(2).stderr(contains("found no state of a render"));
+    command(&["--seed", "5", "--resume", "a.state"]).assert().code(2).stderr(contains("the state of another render"));
+    command(&["--resume", "none.state"]).assert().code(2).stderr(contains("cannot be opened"));
+    command(&["--shard", "4/3", "-o", "x"]).assert().code(2);
+    command(&["--checkpoint", "scene.toml"]).assert().code(2).stderr(contains("would overwrite"));
+    std::fs::write(&path, text.replace("0.8", "0.7")).expect("written");
+    merge(&["3.shard", "1.shard", "2.shard"]).assert().code(2).stderr(contains("have changed"));
+}

@@ -2,26 +2,23 @@
 
 mod files;
 mod pictures;
+mod state;
+mod work;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::json;
 
-use super::notes::Notes;
-use super::output::Sink;
+use super::output::{self, Sink};
 use super::{Failure, Talk};
-use crate::render::build::{Built, Kind, build};
-use crate::render::description::{self, Description};
-use crate::render::estimate::REPLICATES;
-use crate::render::measure::{Board, Meter, Target};
-use crate::render::reading::{self, Reading};
+use crate::render::build::{Built, Kind};
+use crate::render::description;
+use crate::render::reading;
 use crate::render::spool::Share;
-use crate::report::envelope::Envelope;
 use crate::report::render as report;
+use state::State;
+use work::{Job, Overrides, Work};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
@@ -32,7 +29,9 @@ Examples:
   photopic render data/scenes/office.toml
   photopic render room.toml --check
   photopic render room.toml --target '1 %' --json -o readings.json
-  photopic render room.toml --samples 1024 --folder pictures")]
+  photopic render room.toml --samples 1024 --folder pictures
+  photopic render room.toml --checkpoint room.state            (run it again after a break)
+  photopic render room.toml --shard 1/4 -o 1.shard; …; photopic merge *.shard")]
 pub(super) struct RenderArgs {
     /// The scene; `-` is standard input.
     #[arg(required_unless_present = "schema", value_name = "SCENE")]
@@ -56,6 +55,15 @@ pub(super) struct RenderArgs {
     /// Exit code 1 where that takes more than the samples allowed.
     #[arg(long, value_name = "'SHARE % [WHICH]'", value_parser = target)]
     target: Option<TargetArg>,
+    /// Keep the state of the render in a file, and go on from it where the file is there already.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["check", "target", "resume", "shard"])]
+    checkpoint: Option<PathBuf>,
+    /// Go on from the state that --checkpoint or --shard left behind, to the same bits as without the break.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["check", "target", "shard"])]
+    resume: Option<PathBuf>,
+    /// Render only part I of N (from 1) into the state file of -o; `photopic merge` joins the parts to the same bits as one run.
+    #[arg(long, value_name = "I/N", value_parser = share, requires = "output", conflicts_with_all = ["check", "target", "json"])]
+    shard: Option<Share>,
     /// Folder for the pictures that the scene names; the current one without it.
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
@@ -82,6 +90,36 @@ fn target(text: &str) -> Result<TargetArg, String> {
     Ok(TargetArg { relative: percent / 100.0, which: (!which.is_empty()).then(|| which.to_owned()) })
 }
 
+fn share(text: &str) -> Result<Share, String> {
+    let both = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+    match both {
+        Some((index, count)) if (1..=count).contains(&index) => Ok(Share { index: index - 1, count }),
+        _ => Err(format!("`{text}`; expected I/N, part I (1 to N) of N")),
+    }
+}
+
+/// Arguments of `merge`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+The scene and its files are read again from where they were; the parts of one render have the same fingerprint.
+
+Example:
+  photopic merge *.shard --folder pictures --json -o readings.json")]
+pub(super) struct MergeArgs {
+    /// All parts that `photopic render --shard` wrote.
+    #[arg(required = true, value_name = "SHARD")]
+    shards: Vec<String>,
+    /// Folder for the pictures that the scene names; the current one without it.
+    #[arg(long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
+    /// One JSON document.
+    #[arg(long)]
+    json: bool,
+    /// Write the readings to a file instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
 pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
     let a = arguments;
     let Some(path) = a.scene.as_deref() else {
@@ -89,122 +127,54 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         writeln!(sink, "{:#}", description::schema())?;
         return sink.finish(true);
     };
-    let begun = Instant::now();
-    let scene = files::Scene::read(path)?;
-    let wrong = |e: description::Error| Failure::Message(format!("{path}:{e}"));
-    let mut description = Description::parse(&scene.text).map_err(wrong)?;
-    let render = &mut description.render;
-    render.samples = a.samples.unwrap_or(render.samples);
-    render.meter_samples = a.meter_samples.unwrap_or(render.meter_samples);
-    render.seed = a.seed.unwrap_or(render.seed);
-    let built = build(&scene.text, &description, &scene).map_err(wrong)?;
-    let inputs = scene.inputs();
-    let read: Vec<String> = inputs.iter().map(|i| i.path.clone()).collect();
-    let mut sink = Sink::open(a.output.as_deref(), &read)?;
-    let settings = json!({
-        "samples": description.render.samples,
-        "meter_samples": description.render.meter_samples,
-        "seed": description.render.seed,
-        "replicates": REPLICATES,
-    });
-    let (result, text, reached) = if a.check {
-        (report::contents(&built), report::contents_text(&built), true)
-    } else {
-        let notes = Notes::new(&[], talk);
-        let (readings, written) = render_all(a, &description, &built, &read, talk)?;
-        notes.print(&files::findings(path, &readings));
-        let reached = readings.iter().all(|r| r.target.is_none_or(|t| t.1));
-        let result = report::result(&built, &readings, &written, begun.elapsed().as_secs_f64());
-        let mut text = report::text(&built, &readings);
-        written.iter().for_each(|w| text.push_str(&format!("written: {w}\n")));
-        (result, text, reached)
-    };
-    if a.json {
-        let mut envelope = Envelope::begin(&mut sink, "render", &settings)?;
-        inputs.into_iter().for_each(|i| envelope.input(i));
-        envelope.result(&result)?;
-        envelope.end()?;
-    } else {
-        sink.write_all(text.as_bytes())?;
+    let overrides = Overrides { samples: a.samples, meter_samples: a.meter_samples, seed: a.seed };
+    let work = Work::new(path, &overrides)?;
+    if a.check {
+        let result = (report::contents(&work.built), report::contents_text(&work.built));
+        return work.print("render", result, a.json, a.output.as_deref());
     }
-    sink.finish(true)?;
-    if reached { Ok(()) } else { Err(Failure::No) }
+    let place = a.checkpoint.as_deref().or(a.resume.as_deref()).or(a.output.as_deref().filter(|_| a.shard.is_some()));
+    let share = a.shard.unwrap_or(Share::WHOLE);
+    let mut state = match place {
+        Some(file) if a.checkpoint.is_some() || a.resume.is_some() || a.shard.is_some() => {
+            if work.read.iter().any(|input| output::same_file(Path::new(input), file)) {
+                return Err(Failure::Message(output::overwrites(file)));
+            }
+            Some(State::open(file, &work.header(share), a.resume.is_some())?)
+        }
+        _ => None,
+    };
+    if state.is_some() && work.built.instruments.iter().any(|i| i.target.is_some()) {
+        let message =
+            "the scene has a `target`, and a state is kept only for a number of samples; expected one or the other";
+        return Err(Failure::Message(message.to_owned()));
+    }
+    let targets = targets(a, &work.built)?;
+    let job = Job { share, folder: a.folder.as_deref().unwrap_or(Path::new("")), targets: &targets, talk };
+    match work.render(&job, state.as_mut())? {
+        None => Ok(()),
+        Some(done) => work.report("render", done, a.json, a.output.as_deref(), talk),
+    }
 }
 
-fn render_all(
-    a: &RenderArgs,
-    description: &Description,
-    built: &Built,
-    read: &[String],
-    talk: Talk,
-) -> Result<(Vec<Reading>, Vec<String>), Failure> {
-    // Every meter with its number in the render; instruments are 2³² numbers apart, so that none depends on another's points.
-    let mut meters: Vec<(u64, Meter)> = Vec::new();
-    let mut first = Vec::new();
-    for (number, instrument) in (0_u64..).zip(&built.instruments) {
-        first.push(meters.len());
-        let own: &[Meter] = match &instrument.kind {
-            Kind::Meter(meter) => std::slice::from_ref(meter),
-            Kind::Grid { meters, .. } => meters,
-            Kind::Camera(_) => &[],
-        };
-        meters.extend((0_u64..).zip(own).map(|(point, m)| ((number << 32) + point, m.clone())));
+pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
+    let mut state = State::join(&a.shards)?;
+    let header = state.header().clone();
+    let task = &header.task;
+    let overrides =
+        Overrides { samples: Some(task.samples), meter_samples: Some(task.meter_samples), seed: Some(task.seed) };
+    let work = Work::new(&task.scene, &overrides)?;
+    if work.fingerprint != header.fingerprint {
+        let message = format!("{}: the scene or its files have changed since the shards were rendered", task.scene);
+        return Err(Failure::Message(message));
     }
-    first.push(meters.len());
-    let targets = targets(a, built)?;
-    let per_replicate = description.render.meter_samples.div_ceil(REPLICATES as u64);
-    let pixels: u64 = (built.instruments.iter())
-        .map(|i| if let Kind::Camera(c) = &i.kind { u64::from(c.width()) * u64::from(c.height()) } else { 0 })
-        .sum();
-    // In units of samples, of meters and pixels alike.
-    let meter_work = per_replicate * (REPLICATES * meters.len()) as u64;
-    let progress = progress(meter_work + pixels * description.render.samples, talk);
-    let mut board = Board::new(&built.scene, &built.settings, Share::WHOLE, meters);
-    let points = |n: usize| first[n]..first[n + 1];
-    let mut reached = vec![None; built.instruments.len()];
-    let weights = built.quantities.luminous.clone();
-    let wanted: Vec<(usize, f64)> = targets.iter().enumerate().filter_map(|(n, t)| Some((n, (*t)?))).collect();
-    if wanted.is_empty() {
-        // A few rounds, so that the bar moves.
-        const ROUNDS: u64 = 64;
-        for round in 1..=ROUNDS {
-            let samples = per_replicate * round / ROUNDS;
-            board.sample_until(samples);
-            progress.set_position(meter_work * round / ROUNDS);
-        }
+    let targets = vec![None; work.built.instruments.len()];
+    let folder = a.folder.as_deref().unwrap_or(Path::new(""));
+    let job = Job { share: Share::WHOLE, folder, targets: &targets, talk };
+    match work.render(&job, Some(&mut state))? {
+        None => Ok(()),
+        Some(done) => work.report("merge", done, a.json, a.output.as_deref(), talk),
     }
-    for (n, relative) in &wanted {
-        // Meters without a target get the samples of the last round as well.
-        let target = Target { relative: *relative, meters: points(*n).collect(), weights: weights.clone() };
-        let met = board.sample_to(&target, per_replicate, |_, samples| {
-            progress.set_position(meter_work * samples / per_replicate);
-        });
-        reached[*n] = Some((*relative, met));
-    }
-    progress.set_position(meter_work);
-    let bands = built.scene.bands();
-    let (mut readings, mut written) = (Vec::new(), Vec::new());
-    for (n, instrument) in built.instruments.iter().enumerate() {
-        if let Kind::Camera(camera) = &instrument.kind {
-            let described =
-                description.sensor[n].camera.as_ref().expect("the instruments are those described").get_ref();
-            let job = pictures::Job {
-                built,
-                camera,
-                instrument: (n as u64) << 32,
-                samples: description.render.samples,
-                folder: a.folder.as_deref().unwrap_or(Path::new("")),
-                inputs: read,
-                talk,
-            };
-            let noise = job.render(described, &instrument.name, &progress, &mut written)?;
-            readings.push(reading::of_picture(instrument, &noise, description.render.samples));
-        } else if let Some(r) = reading::of_board(instrument, &board, first[n], bands, &built.quantities, reached[n]) {
-            readings.push(r);
-        }
-    }
-    progress.finish_and_clear();
-    Ok((readings, written))
 }
 
 /// The target of each instrument: the scene's, or that of the command line where it is for it.
@@ -241,17 +211,4 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
         }
         _ => Ok(targets),
     }
-}
-
-/// A bar for what takes long; hidden where nobody watches.
-fn progress(samples: u64, talk: Talk) -> ProgressBar {
-    use std::io::IsTerminal;
-    if talk.quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(samples);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }

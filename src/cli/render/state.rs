@@ -1,0 +1,216 @@
+//! A render's state on disk: to go on after a break, and to be joined from shares.
+
+use std::fs::{File, OpenOptions};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crate::cli::Failure;
+use crate::image::description::Description;
+use crate::image::error::Error as ImageError;
+use crate::image::source::{self, Region, Source};
+use crate::render::build::{Built, Kind};
+use crate::render::estimate::REPLICATES;
+use crate::render::film::{Film, Noise};
+use crate::render::measure::Board;
+use crate::render::spool::{Extent, Header, Share, Spool, Task};
+
+/// Meters are stored this often; rows of pictures as they are done.
+const BETWEEN: Duration = Duration::from_secs(5);
+/// Rows rendered before they are stored.
+const ROWS: usize = 16;
+
+/// One file that holds everything, or several that hold a share each.
+pub(super) struct State {
+    files: Vec<Spool<File>>,
+    stored: Instant,
+    /// It was joined from shares, which must be whole and stay as they are.
+    is_joined: bool,
+}
+
+fn told(path: &Path) -> impl Fn(crate::render::spool::Error) -> Failure + '_ {
+    move |e| Failure::Message(format!("{}: {e}", path.display()))
+}
+
+fn unfinished(share: Share) -> Failure {
+    let (index, count) = (share.index + 1, share.count);
+    Failure::Message(format!(
+        "share {index}/{count} is not finished; expected `photopic render --shard {index}/{count}` to run to its end"
+    ))
+}
+
+/// The header of the state of a render.
+pub(super) fn header(built: &Built, points: usize, fingerprint: &str, share: Share, task: &Task) -> Header {
+    let channels = built.scene.bands().len() + 3;
+    let pictures = (built.instruments.iter())
+        .filter_map(|i| match &i.kind {
+            Kind::Camera(c) => Some(Extent { width: c.width() as usize, height: c.height() as usize, channels }),
+            _ => None,
+        })
+        .collect();
+    let bands = built.scene.bands().len();
+    Header { fingerprint: fingerprint.to_owned(), task: task.clone(), share, points, bands, pictures }
+}
+
+impl State {
+    /// Opens the file, which must belong to this render, or begins it where there is none (and `resume` does not ask for one).
+    pub(super) fn open(path: &Path, header: &Header, resume: bool) -> Result<Self, Failure> {
+        let begin = !resume && !path.exists();
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create_new(begin);
+        let file = options.open(path).map_err(|e| {
+            Failure::Message(format!("{}: cannot be opened: {e}; expected the state of a render", path.display()))
+        })?;
+        let spool = if begin {
+            Spool::create(file, header.clone()).map_err(told(path))?
+        } else {
+            let spool = Spool::open(file).map_err(told(path))?;
+            spool.check(&header.fingerprint).map_err(told(path))?;
+            if spool.header().share != header.share {
+                let Share { index, count } = spool.header().share;
+                let message =
+                    format!("{}: share {}/{count} of the render; expected another", path.display(), index + 1);
+                return Err(Failure::Message(message));
+            }
+            spool
+        };
+        Ok(Self { files: vec![spool], stored: Instant::now(), is_joined: false })
+    }
+
+    /// Opens the shares of a render: all of them, each once.
+    pub(super) fn join(paths: &[String]) -> Result<Self, Failure> {
+        let mut files: Vec<Spool<File>> = Vec::new();
+        for path in paths {
+            let place = Path::new(path);
+            let file = File::open(place)
+                .map_err(|e| Failure::Message(format!("{path}: cannot be read: {e}; expected a share of a render")))?;
+            let spool = Spool::open(file).map_err(told(place))?;
+            if let Some(first) = files.first() {
+                spool.check(&first.header().fingerprint).map_err(told(place))?;
+            }
+            let share = spool.header().share;
+            if files.iter().any(|f| f.header().share.count != share.count || f.header().share.index == share.index) {
+                let message =
+                    format!("{path}: share {}/{} twice, or of another division", share.index + 1, share.count);
+                return Err(Failure::Message(message));
+            }
+            files.push(spool);
+        }
+        let count = files[0].header().share.count;
+        let missing: Vec<String> = (0..count)
+            .filter(|index| files.iter().all(|f| f.header().share.index != *index))
+            .map(|index| format!("{}/{count}", index + 1))
+            .collect();
+        if !missing.is_empty() {
+            return Err(Failure::Message(format!(
+                "the shares {} are missing; expected all of them",
+                missing.join(", ")
+            )));
+        }
+        Ok(Self { files, stored: Instant::now(), is_joined: true })
+    }
+
+    /// What the files hold.
+    pub(super) fn header(&self) -> &Header {
+        self.files[0].header()
+    }
+
+    /// The file that holds replicate or row `number`.
+    fn holder(&mut self, number: usize) -> Option<&mut Spool<File>> {
+        self.files.iter_mut().find(|f| f.header().share.has(number))
+    }
+
+    /// Puts on the board what was stored; of shares that are joined, `samples` per replicate.
+    pub(super) fn restore(&mut self, board: &mut Board<'_>, points: usize, samples: u64) -> Result<(), Failure> {
+        let is_joined = self.is_joined;
+        for point in 0..points {
+            for number in 0..REPLICATES {
+                let Some(file) = self.holder(number) else { continue };
+                match file.replicate(point, number).map_err(|e| Failure::Message(e.to_string()))? {
+                    Some(found) if !is_joined || found.samples() == samples => board.restore(point, number, found),
+                    _ if is_joined => return Err(unfinished(file.header().share)),
+                    _ => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Stores what is on the board, not more often than every few seconds unless it is the `last` time.
+    pub(super) fn store(&mut self, board: &Board<'_>, points: usize, last: bool) -> Result<(), Failure> {
+        if self.is_joined || (!last && self.stored.elapsed() < BETWEEN) {
+            return Ok(());
+        }
+        self.stored = Instant::now();
+        for point in 0..points {
+            for (number, replicate) in board.replicates(point).iter().enumerate() {
+                let Some(file) = self.holder(number) else { continue };
+                file.store_replicate(point, number, replicate).map_err(|e| Failure::Message(e.to_string()))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Renders the rows of a picture that are this state's and not stored yet.
+    pub(super) fn render<F: Fn(u64) + Send + Sync>(
+        &mut self,
+        picture: usize,
+        film: &Film<'_, F>,
+    ) -> Result<(), Failure> {
+        let wrong = |e: crate::render::spool::Error| Failure::Message(e.to_string());
+        let is_joined = self.is_joined;
+        let mut missing = Vec::new();
+        for y in 0..film.description().height {
+            if let Some(file) = self.holder(y)
+                && file.row(picture, y).map_err(wrong)?.is_none()
+            {
+                if is_joined {
+                    return Err(unfinished(file.header().share));
+                }
+                missing.push(y);
+            }
+        }
+        for rows in missing.chunks(ROWS) {
+            for (y, (noise, samples)) in rows.iter().zip(film.rows(rows)) {
+                if let Some(file) = self.holder(*y) {
+                    file.store_row(picture, *y, &noise, &samples).map_err(wrong)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A picture whose rows are all stored.
+    pub(super) fn picture(&mut self, picture: usize, description: Description) -> Stored<'_> {
+        Stored { state: self, picture, description, noise: Noise::default() }
+    }
+}
+
+/// A stored picture as a source of pixels; read from top to bottom, it sums up its noise.
+pub(super) struct Stored<'a> {
+    state: &'a mut State,
+    picture: usize,
+    description: Description,
+    pub noise: Noise,
+}
+
+impl Source for Stored<'_> {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), ImageError> {
+        source::check(&self.description, region, channels, out);
+        let width = self.description.width;
+        for (y, row) in (region.y..).zip(out.chunks_exact_mut((region.width * channels.len()).max(1))) {
+            let missing = || std::io::Error::other(format!("row {y} was not rendered; expected a share that is whole"));
+            let file = self.state.holder(y).ok_or_else(missing)?;
+            let found = file.row(self.picture, y).map_err(std::io::Error::other)?;
+            let (noise, samples) = found.ok_or_else(missing)?;
+            self.noise.append(&noise);
+            for (channel, out) in channels.iter().zip(row.chunks_exact_mut(region.width)) {
+                out.copy_from_slice(&samples[channel * width + region.x..][..region.width]);
+            }
+        }
+        Ok(())
+    }
+}

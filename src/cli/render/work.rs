@@ -1,0 +1,240 @@
+//! One render: the scene built, its meters and pictures sampled, its results told.
+
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use super::state::{self, State};
+use super::{files, pictures};
+use crate::cli::notes::Notes;
+use crate::cli::output::Sink;
+use crate::cli::{Failure, Talk};
+use crate::render::build::{Built, Kind, build};
+use crate::render::description::{self, Description};
+use crate::render::estimate::REPLICATES;
+use crate::render::measure::{Board, Meter, Target};
+use crate::render::reading::{self, Reading};
+use crate::render::spool::{Header, Share, Task};
+use crate::report::envelope::{Envelope, Input};
+use crate::report::render as report;
+
+/// Rounds in which meters without a target are sampled: so often the bar moves.
+const ROUNDS: u64 = 64;
+
+/// What the command line puts in place of the scene's.
+pub(super) struct Overrides {
+    pub samples: Option<u64>,
+    pub meter_samples: Option<u64>,
+    pub seed: Option<u64>,
+}
+
+/// A scene that is ready, with all that was read for it.
+pub(super) struct Work {
+    path: String,
+    pub built: Built,
+    description: Description,
+    inputs: Vec<Input>,
+    /// Paths of the inputs.
+    pub read: Vec<String>,
+    /// A checksum of everything that the results depend on.
+    pub fingerprint: String,
+    /// Every meter with its number in the render; instruments are 2³² numbers apart, so that none depends on another's points.
+    meters: Vec<(u64, Meter)>,
+    /// The first meter of each instrument, and the end.
+    first: Vec<usize>,
+    begun: Instant,
+}
+
+/// How it is to be rendered.
+pub(super) struct Job<'a> {
+    pub share: Share,
+    pub folder: &'a Path,
+    /// The relative standard error to reach, per instrument.
+    pub targets: &'a [Option<f64>],
+    pub talk: Talk,
+}
+
+/// Readings, and the files written.
+pub(super) struct Done {
+    readings: Vec<Reading>,
+    written: Vec<String>,
+}
+
+impl Work {
+    pub(super) fn new(path: &str, overrides: &Overrides) -> Result<Self, Failure> {
+        let begun = Instant::now();
+        let scene = files::Scene::read(path)?;
+        let wrong = |e: description::Error| Failure::Message(format!("{path}:{e}"));
+        let mut description = Description::parse(&scene.text).map_err(wrong)?;
+        let render = &mut description.render;
+        render.samples = overrides.samples.unwrap_or(render.samples);
+        render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);
+        render.seed = overrides.seed.unwrap_or(render.seed);
+        let built = build(&scene.text, &description, &scene).map_err(wrong)?;
+        let inputs = scene.inputs();
+        let read = inputs.iter().map(|i| i.path.clone()).collect();
+        let mut sum = Sha256::new();
+        sum.update(env!("CARGO_PKG_VERSION"));
+        inputs.iter().filter_map(|i| i.sha256.as_ref()).for_each(|s| sum.update(s));
+        let render = &description.render;
+        [render.samples, render.meter_samples, render.seed].into_iter().for_each(|n| sum.update(n.to_le_bytes()));
+        let fingerprint = sum.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        let (mut meters, mut first): (Vec<(u64, Meter)>, Vec<usize>) = (Vec::new(), Vec::new());
+        for (number, instrument) in (0_u64..).zip(&built.instruments) {
+            first.push(meters.len());
+            let own: &[Meter] = match &instrument.kind {
+                Kind::Meter(meter) => std::slice::from_ref(meter),
+                Kind::Grid { meters, .. } => meters,
+                Kind::Camera(_) => &[],
+            };
+            meters.extend((0_u64..).zip(own).map(|(point, m)| ((number << 32) + point, m.clone())));
+        }
+        first.push(meters.len());
+        Ok(Self { path: path.to_owned(), built, description, inputs, read, fingerprint, meters, first, begun })
+    }
+
+    /// The header of the state of a share.
+    pub(super) fn header(&self, share: Share) -> Header {
+        let render = &self.description.render;
+        let task = Task {
+            scene: self.path.clone(),
+            samples: render.samples,
+            meter_samples: render.meter_samples,
+            seed: render.seed,
+        };
+        state::header(&self.built, self.meters.len(), &self.fingerprint, share, &task)
+    }
+
+    /// Samples everything; `None` where only a share was asked for, which is in the state.
+    pub(super) fn render(&self, job: &Job<'_>, mut state: Option<&mut State>) -> Result<Option<Done>, Failure> {
+        let render = &self.description.render;
+        let per_replicate = render.meter_samples.div_ceil(REPLICATES as u64);
+        let pixels: u64 = (self.built.instruments.iter())
+            .map(|i| if let Kind::Camera(c) = &i.kind { u64::from(c.width()) * u64::from(c.height()) } else { 0 })
+            .sum();
+        // In units of samples, of meters and pixels alike.
+        let meter_work = per_replicate * (REPLICATES * self.meters.len()) as u64;
+        let progress = progress(meter_work + pixels * render.samples, job.talk);
+        let mut board = Board::new(&self.built.scene, &self.built.settings, job.share, self.meters.clone());
+        if let Some(state) = state.as_deref_mut() {
+            state.restore(&mut board, self.meters.len(), per_replicate)?;
+        }
+        let mut reached = vec![None; self.built.instruments.len()];
+        if job.targets.iter().all(Option::is_none) {
+            for round in 1..=ROUNDS {
+                board.sample_until(per_replicate * round / ROUNDS);
+                progress.set_position(meter_work * round / ROUNDS);
+                if let Some(state) = state.as_deref_mut() {
+                    state.store(&board, self.meters.len(), round == ROUNDS)?;
+                }
+            }
+        }
+        for (n, relative) in (0..).zip(job.targets).filter_map(|(n, t)| Some((n, (*t)?))) {
+            // All meters are sampled alike: those without a target get as many samples as those with one.
+            let weights = self.built.quantities.luminous.clone();
+            let target = Target { relative, meters: (self.first[n]..self.first[n + 1]).collect(), weights };
+            let met = board.sample_to(&target, per_replicate, |_, samples| {
+                progress.set_position(meter_work * samples / per_replicate);
+            });
+            reached[n] = Some((relative, met));
+        }
+        progress.set_position(meter_work);
+        let mut done = Done { readings: Vec::new(), written: Vec::new() };
+        let mut picture = 0;
+        for (n, instrument) in self.built.instruments.iter().enumerate() {
+            if let Kind::Camera(camera) = &instrument.kind {
+                let described = self.description.sensor[n].camera.as_ref();
+                let job = pictures::Job {
+                    built: &self.built,
+                    camera,
+                    described: described.expect("the instruments are those described").get_ref(),
+                    name: &instrument.name,
+                    instrument: (n as u64) << 32,
+                    samples: render.samples,
+                    folder: job.folder,
+                    inputs: &self.read,
+                    talk: job.talk,
+                    is_part: job.share != Share::WHOLE,
+                };
+                let stored = state.as_deref_mut().map(|s| (s, picture));
+                let noise = job.render(stored, &progress, &mut done.written)?;
+                picture += 1;
+                done.readings.push(reading::of_picture(instrument, &noise, render.samples));
+            } else if let Some(r) = reading::of_board(
+                instrument,
+                &board,
+                self.first[n],
+                self.built.scene.bands(),
+                &self.built.quantities,
+                reached[n],
+            ) {
+                done.readings.push(r);
+            }
+        }
+        progress.finish_and_clear();
+        Ok((job.share == Share::WHOLE).then_some(done))
+    }
+
+    /// Tells what came out.
+    pub(super) fn report(
+        &self,
+        command: &str,
+        done: Done,
+        as_json: bool,
+        output: Option<&Path>,
+        talk: Talk,
+    ) -> Result<(), Failure> {
+        Notes::new(&[], talk).print(&files::findings(&self.path, &done.readings));
+        let seconds = self.begun.elapsed().as_secs_f64();
+        let result = report::result(&self.built, &done.readings, &done.written, seconds);
+        let mut text = report::text(&self.built, &done.readings);
+        done.written.iter().for_each(|w| text.push_str(&format!("written: {w}\n")));
+        self.print(command, (result, text), as_json, output)?;
+        let reached = done.readings.iter().all(|r| r.target.is_none_or(|t| t.1));
+        if reached { Ok(()) } else { Err(Failure::No) }
+    }
+
+    /// Writes a result as JSON or as text.
+    pub(super) fn print(
+        &self,
+        command: &str,
+        (result, text): (Value, String),
+        as_json: bool,
+        output: Option<&Path>,
+    ) -> Result<(), Failure> {
+        let mut sink = Sink::open(output, &self.read)?;
+        if as_json {
+            let render = &self.description.render;
+            let settings = json!({
+                "samples": render.samples,
+                "meter_samples": render.meter_samples,
+                "seed": render.seed,
+                "replicates": REPLICATES,
+            });
+            let mut envelope = Envelope::begin(&mut sink, command, &settings)?;
+            self.inputs.iter().for_each(|i| envelope.input(i.clone()));
+            envelope.result(&result)?;
+            envelope.end()?;
+        } else {
+            sink.write_all(text.as_bytes())?;
+        }
+        sink.finish(true)
+    }
+}
+
+/// A bar for what takes long; hidden where nobody watches.
+fn progress(samples: u64, talk: Talk) -> ProgressBar {
+    use std::io::IsTerminal;
+    if talk.quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(samples);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
