@@ -109,7 +109,7 @@ fn mistakes_are_told_with_file_line_and_column() {
         ("intensity", "intensty", ":4:27: unknown field `intensty`, expected one of"),
         ("\"1000 cd\"", "\"1000 lx\"", ":4:39: found `1000 lx`; expected an intensity"),
         ("spectrum = \"A\"", "spectrum = \"Q\"", "no spectrum is called `Q`"),
-        ("at = [0, 0, 0] }", "on = \"floor\" }", "no shape but a box is called `floor`"),
+        ("at = [0, 0, 0] }", "on = \"floor\" }", "no shape of one surface is called `floor`"),
         ("illuminance = { at = [0, 0, 0] }", "", "sensor `below` has not one kind"),
         (", intensity = \"1000 cd\"", "", "expected one of them"),
     ] {
@@ -271,4 +271,81 @@ camera = { at = [-1, -1, 1], look_at = [1, 1, 1], resolution = [9, 7], exr = "vi
     command(&["--checkpoint", "scene.toml"]).assert().code(2).stderr(contains("would overwrite"));
     std::fs::write(&path, text.replace("0.8", "0.7")).expect("written");
     merge(&["3.shard", "1.shard", "2.shard"]).assert().code(2).stderr(contains("have changed"));
+}
+
+/// A unit tetrahedron as a mesh, scaled by 2, hides the lamp where it stands; its instances hide it there, too. (0.1, 0.1, 0.1) and its
+/// double lie inside, (0.9, 0.9, 0.9) outside.
+#[test]
+fn meshes_and_their_instances_cast_shadows() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    std::fs::write(folder.path().join("tetra.obj"), obj).expect("written");
+    let text = r#"
+[[shape]]
+mesh = { file = "tetra.obj", transform = [{ scale = 2.0 }], instances = [[], [{ rotate = { axis = [0, 0, 1], angle = "180 deg" } }, { translate = [10, 0, 0] }]] }
+[[light]]
+distant = { from = [0, 0, 1], irradiance = "500 lx" }
+[[sensor]]
+name = "inside"
+illuminance = { at = [0.2, 0.2, 0.2] }
+[[sensor]]
+name = "inside the copy"
+illuminance = { at = [9.8, -0.2, 0.2] }
+[[sensor]]
+name = "outside"
+illuminance = { at = [1.8, 1.8, 1.8] }
+"#;
+    let path = scene(&folder, text);
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "32"]));
+    let value = |n: usize| out["results"][0]["sensors"][n]["value"].as_f64().expect("a number");
+    assert_eq!((value(0), value(1)), (0.0, 0.0));
+    assert!((value(2) - 500.0).abs() < 1e-9, "{}", value(2));
+    assert_eq!(out["inputs"].as_array().map(Vec::len), Some(2));
+    for (from, to, message) in [
+        ("tetra.obj", "none.obj", "cannot be read"),
+        ("tetra.obj", "scene.toml", "ends in .ply or .obj"),
+        ("scale = 2.0", "scale = 0.0", "cannot be undone"),
+        ("{ scale = 2.0 }", "{ scale = 2.0, translate = [0, 0, 1] }", "not one of translate, rotate, scale"),
+    ] {
+        let path = scene(&folder, &text.replacen(from, to, 1));
+        photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message));
+    }
+}
+
+/// An open meter under an overcast sky of 10 000 lx, under constant surroundings (π L), and towards the sun at noon of the equinox on the
+/// equator, which stands within half a degree of the zenith.
+#[test]
+fn skies_and_the_sun_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (light, expected, allowed) in [
+        ("sky = { type = 16, horizontal = \"10000 lx\" }", 10_000.0, 0.01),
+        ("environment = { radiance = \"100 cd/m2\" }", 314.159_265, 0.01),
+        (
+            "sun = { date = 2024-03-20T12:07:30Z, latitude = \"0 deg\", longitude = \"0 deg\", irradiance = \"80 klx\" }",
+            80_000.0,
+            1e-4,
+        ),
+    ] {
+        let text = format!("[[light]]\n{light}\n[[sensor]]\nname = \"up\"\nilluminance = {{ at = [0, 0, 0] }}\n");
+        let path = scene(&folder, &text);
+        let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "65536"]));
+        let value = out["results"][0]["sensors"][0]["value"].as_f64().expect("a number");
+        assert!((value / expected - 1.0).abs() < allowed, "{light}: {value}");
+    }
+    for (light, message) in [
+        (
+            "sun = { date = 2024-03-20T00:00:00Z, latitude = \"0 deg\", longitude = \"0 deg\", irradiance = \"1 lx\" }",
+            "below the horizon",
+        ),
+        (
+            "sun = { date = 2024-03-20, latitude = \"0 deg\", longitude = \"0 deg\", irradiance = \"1 lx\" }",
+            "its offset",
+        ),
+        ("sky = { type = 17, zenith = \"1 cd/m2\" }", "a type of sky"),
+        ("sky = { type = 3 }", "both or neither"),
+    ] {
+        let text = format!("[[light]]\n{light}\n[[sensor]]\nname = \"up\"\nilluminance = {{ at = [0, 0, 0] }}\n");
+        let path = scene(&folder, &text);
+        photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message));
+    }
 }

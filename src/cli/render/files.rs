@@ -14,6 +14,8 @@ use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::format::{self, ReadOptions};
 use crate::render::build::Files;
+use crate::render::format as mesh;
+use crate::render::mesh::MeshData;
 use crate::render::reading::Reading;
 use crate::report::envelope::Input;
 use crate::spectrum::Spectrum;
@@ -83,6 +85,19 @@ impl Files for Scene {
         let file = read.map_err(|e| e.in_file(&path).to_string())?;
         self.note(Input { path, sha256: checksum(&bytes) });
         Ok(file.value.luminaire)
+    }
+
+    fn meshes(&self, file: &str) -> Result<Vec<MeshData>, String> {
+        let path = self.path(file);
+        let bytes = fs::read(&path).map_err(|e| format!("{path}: cannot be read: {e}; expected a mesh"))?;
+        let wrong = |e: mesh::Error| format!("{path}:{e}");
+        let objects = match Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+            Some("obj") => mesh::obj::read(&bytes).map_err(wrong)?,
+            Some("ply") => vec![mesh::ply::read(&bytes).map_err(wrong)?],
+            _ => return Err(format!("{path}: expected a mesh whose name ends in .ply or .obj")),
+        };
+        self.note(Input { path, sha256: checksum(&bytes) });
+        Ok(objects.into_iter().map(|o| o.mesh).collect())
     }
 }
 

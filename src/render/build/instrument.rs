@@ -1,5 +1,7 @@
 //! Instruments, and the quantities that they read.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::Builder;
@@ -80,23 +82,23 @@ const FISHEYE_DEG: f64 = 180.0;
 const MOST_POINTS: u64 = 10_000_000;
 
 impl Builder<'_> {
-    pub(super) fn instruments(&self, scene: &Scene) -> Result<Vec<Instrument>, Error> {
+    /// The instruments; `surfaces` are the scene's surfaces that each described shape is.
+    pub(super) fn instruments(&self, scene: &Scene, surfaces: &[Range<usize>]) -> Result<Vec<Instrument>, Error> {
         if self.description.sensor.is_empty() {
             return Err(self.wrong(&(0..0), "no sensor; expected at least one [[sensor]]"));
         }
-        self.description.sensor.iter().map(|s| self.instrument(s, scene)).collect()
+        self.description.sensor.iter().map(|s| self.instrument(s, scene, surfaces)).collect()
     }
 
-    fn instrument(&self, sensor: &Sensor, scene: &Scene) -> Result<Instrument, Error> {
+    fn instrument(&self, sensor: &Sensor, scene: &Scene, surfaces: &[Range<usize>]) -> Result<Instrument, Error> {
         let mut kinds = Vec::new();
         let meter = |at: [f64; 3], axis: DVec3, response| {
             let at = DVec3::from_array(at);
             Kind::Meter(Meter { place: point(at, axis, scene), response })
         };
-        let upright =
-            |axis: Option<[f64; 3]>, span: &std::ops::Range<usize>| self.unit(axis.unwrap_or([0.0, 0.0, 1.0]), span);
+        let upright = |axis: Option<[f64; 3]>, span: &Range<usize>| self.unit(axis.unwrap_or([0.0, 0.0, 1.0]), span);
         if let Some(i) = &sensor.illuminance {
-            kinds.push(self.illuminance(i.get_ref(), &i.span(), scene)?);
+            kinds.push(self.illuminance(i.get_ref(), &i.span(), scene, surfaces)?);
         }
         if let Some(l) = &sensor.luminance {
             let m = l.get_ref();
@@ -134,7 +136,13 @@ impl Builder<'_> {
         Ok(Instrument { name: sensor.name.get_ref().clone(), spectrum: sensor.spectrum, target, kind })
     }
 
-    fn illuminance(&self, i: &Illuminance, span: &std::ops::Range<usize>, scene: &Scene) -> Result<Kind, Error> {
+    fn illuminance(
+        &self,
+        i: &Illuminance,
+        span: &Range<usize>,
+        scene: &Scene,
+        surfaces: &[Range<usize>],
+    ) -> Result<Kind, Error> {
         let response = Response::Planar;
         match (&i.at, &i.grid, &i.on) {
             (Some(at), None, None) => {
@@ -164,14 +172,13 @@ impl Builder<'_> {
             (None, None, Some(on)) if i.normal.is_none() => {
                 let shapes = &self.description.shape;
                 let named = |n: usize| shapes[n].name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref());
-                let number = (0..shapes.len()).find(|n| named(*n)).filter(|n| shapes[*n].cuboid.is_none());
+                let number = (0..shapes.len()).find(|n| named(*n)).filter(|n| surfaces[*n].len() == 1);
                 let Some(number) = number else {
-                    let message = format!("no shape but a box is called `{}`; expected the name of one", on.get_ref());
+                    let message =
+                        format!("no shape of one surface is called `{}`; expected the name of one", on.get_ref());
                     return Err(self.wrong(&on.span(), message));
                 };
-                // A box is six surfaces of the scene, every other shape one.
-                let surface: usize = shapes[..number].iter().map(|s| if s.cuboid.is_some() { 6 } else { 1 }).sum();
-                let shape = scene.surfaces().shapes()[surface].clone();
+                let shape = scene.surfaces().shapes()[surfaces[number].start].clone();
                 if !shape.area().is_finite() {
                     return Err(self.wrong(&on.span(), "a plane without bounds; expected a shape of finite area"));
                 }
@@ -181,7 +188,7 @@ impl Builder<'_> {
         }
     }
 
-    fn camera(&self, c: &DescribedCamera, span: &std::ops::Range<usize>) -> Result<Camera, Error> {
+    fn camera(&self, c: &DescribedCamera, span: &Range<usize>) -> Result<Camera, Error> {
         let degrees = |default: f64| c.field_of_view.map_or(default, |a| a.0.to_degrees());
         let lens = c.aperture_radius.is_some() || c.focus.is_some();
         let projection = match c.projection {
@@ -215,7 +222,7 @@ impl Builder<'_> {
         Camera::new(at, target, up, projection, c.resolution).map_err(|e| self.wrong(span, e))
     }
 
-    fn unit(&self, vector: [f64; 3], span: &std::ops::Range<usize>) -> Result<DVec3, Error> {
+    fn unit(&self, vector: [f64; 3], span: &Range<usize>) -> Result<DVec3, Error> {
         DVec3::from_array(vector)
             .try_normalize()
             .ok_or_else(|| self.wrong(span, format!("the direction {vector:?}; expected a vector of some length")))

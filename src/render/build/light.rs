@@ -11,14 +11,17 @@ use crate::luminaire::placement::{Orientation, Placement};
 use crate::luminaire::{Kind as LampKind, Luminaire};
 use crate::render::bands::Bands;
 use crate::render::description::Error;
-use crate::render::description::light::{Lamp, Light as Described};
+use crate::render::description::light::{Lamp, Light as Described, Sun as DescribedSun};
 use crate::render::description::quantity::Kind;
 use crate::render::light::Light;
 use crate::render::light::bounding::BoundingSphere;
 use crate::render::light::distant::Distant;
+use crate::render::light::environment::Environment;
 use crate::render::light::goniometric::{Goniometric, per_unit};
 use crate::render::light::point::Point;
+use crate::render::light::sky::{Sky, SkyType};
 use crate::render::light::spot::{Profile, Spot};
+use crate::render::light::sun::{Air, Moment, SunPosition};
 
 /// The place of a light's kind in the text.
 pub(super) fn span(light: &Described) -> Range<usize> {
@@ -27,6 +30,9 @@ pub(super) fn span(light: &Described) -> Range<usize> {
         light.spot.as_ref().map(toml::Spanned::span),
         light.lamp.as_ref().map(toml::Spanned::span),
         light.distant.as_ref().map(toml::Spanned::span),
+        light.environment.as_ref().map(toml::Spanned::span),
+        light.sky.as_ref().map(toml::Spanned::span),
+        light.sun.as_ref().map(toml::Spanned::span),
         light.name.as_ref().map(toml::Spanned::span),
     ];
     kinds.into_iter().flatten().next().unwrap_or(0..0)
@@ -50,9 +56,20 @@ impl Builder<'_> {
         let at = span(light);
         let colour =
             light.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, &at))?;
-        let kinds = [light.point.is_some(), light.spot.is_some(), light.lamp.is_some(), light.distant.is_some()];
+        let kinds = [
+            light.point.is_some(),
+            light.spot.is_some(),
+            light.lamp.is_some(),
+            light.distant.is_some(),
+            light.environment.is_some(),
+            light.sky.is_some(),
+            light.sun.is_some(),
+        ];
         if kinds.iter().filter(|k| **k).count() != 1 {
-            let message = format!("light {} has not one kind; expected one of point, spot, lamp, distant", number + 1);
+            let message = format!(
+                "light {} has not one kind; expected one of point, spot, lamp, distant, environment, sky, sun",
+                number + 1
+            );
             return Err(self.wrong(&at, message));
         }
         let wrong = |e: crate::render::light::Error| self.wrong(&at, e);
@@ -96,8 +113,63 @@ impl Builder<'_> {
             let light = Distant::new(DVec3::from_array(d.from), radius, &irradiance, sphere).map_err(wrong)?;
             return Ok(Arc::new(light));
         }
+        if let Some(all) = &light.environment {
+            let r = all.get_ref().radiance;
+            let radiance = self.scaled(&colour, r.value, r.kind, bands, quantities, &at)?;
+            return Ok(Arc::new(Environment::constant(&radiance, sphere).map_err(wrong)?));
+        }
+        if let Some(sky) = &light.sky {
+            let s = sky.get_ref();
+            let kind = SkyType::new(s.r#type).map_err(wrong)?;
+            let sun = DVec3::from_array(s.sun.unwrap_or([0.0, 0.0, 1.0]));
+            return Ok(Arc::new(match (s.zenith, s.horizontal) {
+                (Some(l), None) => {
+                    let radiance = self.scaled(&colour, l.value, l.kind, bands, quantities, &at)?;
+                    Sky::from_zenith(kind, DVec3::Z, sun, &radiance, sphere).map_err(wrong)?
+                }
+                (None, Some(e)) => {
+                    let irradiance = self.scaled(&colour, e.value, e.kind, bands, quantities, &at)?;
+                    Sky::from_horizontal(kind, DVec3::Z, sun, &irradiance, sphere).map_err(wrong)?
+                }
+                _ => return Err(self.wrong(&at, "both or neither of `zenith` and `horizontal`; expected one of them")),
+            }));
+        }
+        if let Some(sun) = &light.sun {
+            let s = sun.get_ref();
+            let position = self.sun(s)?;
+            let irradiance = self.scaled(&colour, s.irradiance.value, s.irradiance.kind, bands, quantities, &at)?;
+            return Ok(Arc::new(position.light(&irradiance, sphere).map_err(wrong)?));
+        }
         let lamp = light.lamp.as_ref().expect("one of the kinds");
         self.lamp(lamp.get_ref(), &lamp.span(), &colour, bands, quantities)
+    }
+
+    /// Where the sun stands, its direction as refracted by standard air.
+    fn sun(&self, sun: &DescribedSun) -> Result<SunPosition, Error> {
+        let span = sun.date.span();
+        let found = sun.date.get_ref();
+        let (Some(date), Some(time), Some(offset)) = (found.date, found.time, found.offset) else {
+            let message =
+                format!("found `{found}`; expected a date, a time and its offset, such as 2026-06-21T12:00:00+02:00");
+            return Err(self.wrong(&span, message));
+        };
+        let minutes = match offset {
+            toml::value::Offset::Z => 0,
+            toml::value::Offset::Custom { minutes } => minutes,
+        };
+        let seconds = f64::from(time.second.unwrap_or(0)) + 1e-9 * f64::from(time.nanosecond.unwrap_or(0));
+        let hours = f64::from(time.hour) + (f64::from(time.minute) - f64::from(minutes)) / 60.0 + seconds / 3600.0;
+        let moment = Moment::utc(i32::from(date.year), date.month.into(), date.day.into(), hours);
+        let moment = moment.map_err(|e| self.wrong(&span, e))?;
+        let air = Some(Air { pressure_hpa: 1013.25, temperature_c: 15.0 });
+        let position = SunPosition::new(moment, sun.latitude.0.to_degrees(), sun.longitude.0.to_degrees(), air);
+        let position = position.map_err(|e| self.wrong(&span, e))?;
+        if position.direction().z <= 0.0 {
+            return Err(
+                self.wrong(&span, "the sun is below the horizon then and there; expected a time at which it is up")
+            );
+        }
+        Ok(position)
     }
 
     fn lamp(

@@ -16,6 +16,7 @@ use super::integrator::path::{Follow, Limits};
 use super::light::Light;
 use super::light::bounding::BoundingSphere;
 use super::measure::Settings;
+use super::mesh::MeshData;
 use super::scene::{Part, Scene};
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
@@ -38,6 +39,12 @@ pub trait Files {
     /// # Errors
     /// What is wrong with it, in words.
     fn luminaire(&self, file: &str) -> Result<Luminaire, String>;
+
+    /// The meshes in a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    fn meshes(&self, file: &str) -> Result<Vec<MeshData>, String>;
 }
 
 /// A scene that is ready to be rendered.
@@ -82,7 +89,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let (bands, wavelength_error) = builder.bands(&colours)?;
     let quantities = Quantities::new(&bands);
     let materials = builder.materials(&bands)?;
-    let parts = builder.parts(&materials, &bands, &quantities)?;
+    let (parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
     let sphere = around(&parts);
     let mut light_names = Vec::new();
     let mut lights: Vec<Arc<dyn Light>> = Vec::new();
@@ -90,10 +97,13 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         lights.push(builder.light(light, number, &bands, &quantities, sphere)?);
         light_names.push(light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone()));
     }
-    let names = (0..).zip(&description.shape).filter(|(_, s)| s.emission.is_some());
-    light_names.extend(names.map(|(n, s)| surface::name(s, n)));
+    for (number, (shape, surfaces)) in description.shape.iter().zip(&surfaces).enumerate() {
+        if shape.emission.is_some() {
+            light_names.extend(surfaces.clone().map(|_| surface::name(shape, number)));
+        }
+    }
     let scene = Scene::new(bands, parts, lights);
-    let instruments = builder.instruments(&scene)?;
+    let instruments = builder.instruments(&scene, &surfaces)?;
     let render = &description.render;
     let follow = match render.solver {
         Solver::Path => Follow::All,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use toml::Spanned;
 
 use super::colour::{Colour, Edge};
@@ -12,10 +12,12 @@ use super::{Builder, Quantities};
 use crate::brdf::lambert::Lambert;
 use crate::render::bands::Bands;
 use crate::render::description::Error;
-use crate::render::description::surface::{Emission as Emitted, Shape as Described};
+use crate::render::description::surface::{Emission as Emitted, Mesh as DescribedMesh, Shape as Described, Step};
 use crate::render::emission::Emission;
 use crate::render::material::Material;
 use crate::render::material::opaque::Opaque;
+use crate::render::mesh::Mesh;
+use crate::render::placed::PlacedMesh;
 use crate::render::scene::Part;
 use crate::render::shape::Shape;
 use crate::render::shape::cylinder::Cylinder;
@@ -35,22 +37,27 @@ pub(super) fn name(shape: &Described, number: usize) -> String {
 }
 
 impl Builder<'_> {
+    /// All surfaces, and which of them each described shape is.
     pub(super) fn parts(
         &self,
         materials: &[Named],
         bands: &Bands,
         quantities: &Quantities,
-    ) -> Result<Vec<Part>, Error> {
+    ) -> Result<(Vec<Part>, Vec<Range<usize>>), Error> {
         let black = Lambert::new(vec![0.0; bands.len()]).expect("a reflectance of 0");
         let black: Arc<dyn Material> = Arc::new(Opaque::new(Box::new(black), true));
-        let mut parts = Vec::new();
+        let (mut parts, mut ranges) = (Vec::new(), Vec::new());
         for (number, shape) in self.description.shape.iter().enumerate() {
             let material = match &shape.material {
                 None => Arc::clone(&black),
                 Some(wanted) => self.named(materials, wanted)?,
             };
             let faces = self.faces(shape, number)?;
-            let area = faces.iter().map(|f| f.area()).sum();
+            let area: f64 = faces.iter().map(|f| f.area()).sum();
+            if let Some(e) = shape.emission.as_ref().filter(|_| !area.is_finite()) {
+                return Err(self.wrong(&e.span(), "a plane without bounds that emits; expected a shape of finite area"));
+            }
+            ranges.push(parts.len()..parts.len() + faces.len());
             let emission = match &shape.emission {
                 None => None,
                 Some(e) => Some(Arc::new(self.emission(e.get_ref(), &e.span(), area, bands, quantities)?)),
@@ -61,7 +68,7 @@ impl Builder<'_> {
                 emission: emission.clone(),
             }));
         }
-        Ok(parts)
+        Ok((parts, ranges))
     }
 
     /// The surfaces of a described shape.
@@ -100,18 +107,62 @@ impl Builder<'_> {
             let c = s.get_ref();
             out.push((s.span(), one(Cylinder::new(v(c.from), v(c.to), c.radius.0, c.closed))));
         }
+        if let Some(m) = &shape.mesh {
+            out.push((m.span(), Ok(self.meshes(m.get_ref(), &m.span())?)));
+        }
         let mut kinds = out.into_iter();
         match (kinds.next(), kinds.next()) {
             (Some((span, faces)), None) => faces.map_err(|e| self.wrong(&span, e)),
             (first, _) => {
                 let at = first.map(|f| f.0).or_else(|| shape.name.as_ref().map(Spanned::span)).unwrap_or(0..0);
                 let message = format!(
-                    "{} has not one kind; expected one of sphere, plane, disk, rectangle, polygon, box, cylinder",
+                    "{} has not one kind; expected one of sphere, plane, disk, rectangle, polygon, box, cylinder, mesh",
                     name(shape, number)
                 );
                 Err(self.wrong(&at, message))
             }
         }
+    }
+
+    /// The meshes of a file, in their places.
+    fn meshes(&self, m: &DescribedMesh, at: &Range<usize>) -> Result<Vec<Arc<dyn Shape>>, Error> {
+        let mut out: Vec<Arc<dyn Shape>> = Vec::new();
+        let base = self.transform(&m.transform, at)?;
+        let copies = match &m.instances {
+            None => vec![base],
+            Some(all) => all.iter().map(|s| Ok(self.transform(s, at)? * base)).collect::<Result<_, Error>>()?,
+        };
+        for mut data in self.files.meshes(&m.file).map_err(|e| self.wrong(at, e))? {
+            if m.flat {
+                data.normals.clear();
+            }
+            let mesh = Arc::new(Mesh::new(data).map_err(|e| self.wrong(at, format!("{}: {e}", m.file)))?);
+            for to_world in &copies {
+                let placed = PlacedMesh::new(Arc::clone(&mesh), *to_world);
+                let message = "a transform that cannot be undone; expected a scale other than 0";
+                out.push(Arc::new(placed.ok_or_else(|| self.wrong(at, message))?));
+            }
+        }
+        if out.is_empty() {
+            return Err(self.wrong(at, format!("{}: no triangles, or no instance", m.file)));
+        }
+        Ok(out)
+    }
+
+    fn transform(&self, steps: &[Step], at: &Range<usize>) -> Result<DAffine3, Error> {
+        steps.iter().try_fold(DAffine3::IDENTITY, |before, step| {
+            let next = match (step.translate, &step.rotate, step.scale) {
+                (Some(by), None, None) => DAffine3::from_translation(DVec3::from_array(by)),
+                (None, Some(r), None) => {
+                    let axis = DVec3::from_array(r.axis).try_normalize();
+                    let axis = axis.ok_or_else(|| self.wrong(at, "an axis without length; expected a direction"))?;
+                    DAffine3::from_axis_angle(axis, r.angle.0)
+                }
+                (None, None, Some(by)) => DAffine3::from_scale(DVec3::splat(by)),
+                _ => return Err(self.wrong(at, "a step that is not one of translate, rotate, scale")),
+            };
+            Ok(next * before)
+        })
     }
 
     fn emission(

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Vector;
-use super::quantity::{Angle, Flux, Intensity, Irradiance};
+use super::quantity::{Angle, Flux, Intensity, Irradiance, Radiance};
 use super::spectrum::SpectrumSource;
 
 /// A light without a surface; one of the kinds.
@@ -35,6 +35,18 @@ pub struct Light {
     #[serde(default)]
     #[schemars(with = "Option<Distant>")]
     pub distant: Option<Spanned<Distant>>,
+    /// Surroundings that are the same everywhere.
+    #[serde(default)]
+    #[schemars(with = "Option<Environment>")]
+    pub environment: Option<Spanned<Environment>>,
+    /// A CIE standard general sky, z upwards.
+    #[serde(default)]
+    #[schemars(with = "Option<Sky>")]
+    pub sky: Option<Spanned<Sky>>,
+    /// The sun by date and place: +x is east, +y north, +z up.
+    #[serde(default)]
+    #[schemars(with = "Option<Sun>")]
+    pub sun: Option<Spanned<Sun>>,
 }
 
 /// An isotropic point: its flux or its intensity.
@@ -109,6 +121,47 @@ pub struct Distant {
     /// Angle across the disc that it comes from; without it parallel.
     #[serde(default)]
     pub diameter: Option<Angle>,
+}
+
+/// Constant surroundings.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Environment {
+    /// Radiance from everywhere.
+    pub radiance: Radiance,
+}
+
+/// A sky: its radiance at the zenith, or what it makes on the horizontal.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sky {
+    /// 1 to 15 as ISO 15469 numbers them, 16 for the traditional overcast sky.
+    #[schemars(range(min = 1, max = 16))]
+    pub r#type: u8,
+    /// Radiance at the zenith.
+    #[serde(default)]
+    pub zenith: Option<Radiance>,
+    /// Irradiance of the sky without the sun on the horizontal.
+    #[serde(default)]
+    pub horizontal: Option<Irradiance>,
+    /// The direction to the sun, which shapes the sky and is not in it; the zenith without it.
+    #[serde(default)]
+    pub sun: Option<Vector>,
+}
+
+/// The sun.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sun {
+    /// A date-time of TOML with its offset: `2026-06-21T12:00:00+02:00`.
+    #[schemars(with = "String")]
+    pub date: Spanned<toml::value::Datetime>,
+    /// Geographic latitude, north positive.
+    pub latitude: Angle,
+    /// Geographic longitude, east positive.
+    pub longitude: Angle,
+    /// On a surface that faces it.
+    pub irradiance: Irradiance,
 }
 
 fn one() -> f64 {

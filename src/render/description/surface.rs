@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Vector;
-use super::quantity::{Flux, Irradiance, Length, Radiance};
+use super::quantity::{Angle, Flux, Irradiance, Length, Radiance};
 use super::spectrum::SpectrumSource;
 
 /// A surface; one of the kinds.
@@ -52,6 +52,10 @@ pub struct Shape {
     #[serde(default)]
     #[schemars(with = "Option<Cylinder>")]
     pub cylinder: Option<Spanned<Cylinder>>,
+    /// A mesh of triangles in a file (PLY, OBJ).
+    #[serde(default)]
+    #[schemars(with = "Option<Mesh>")]
+    pub mesh: Option<Spanned<Mesh>>,
 }
 
 /// What a surface emits: one amount, or the radiance as a file gives it.
@@ -157,4 +161,46 @@ pub struct Cylinder {
     /// With both ends closed.
     #[serde(default)]
     pub closed: bool,
+}
+
+/// A mesh.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// PLY or OBJ, beside the scene; its coordinates are metres before the transform.
+    pub file: String,
+    /// Flat triangles, although the file has normals at the corners.
+    #[serde(default)]
+    pub flat: bool,
+    /// Steps from the file's coordinates to the scene's, one after the other.
+    #[serde(default)]
+    pub transform: Vec<Step>,
+    /// Copies, each with steps behind those of `transform`; one copy without it. They share the mesh's memory.
+    #[serde(default)]
+    pub instances: Option<Vec<Vec<Step>>>,
+}
+
+/// A step of a transform; one of the kinds.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// By a vector, m.
+    #[serde(default)]
+    pub translate: Option<Vector>,
+    /// About an axis through the origin, anticlockwise seen from its end.
+    #[serde(default)]
+    pub rotate: Option<Rotation>,
+    /// By a factor about the origin.
+    #[serde(default)]
+    pub scale: Option<f64>,
+}
+
+/// A turn.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// The axis.
+    pub axis: Vector,
+    /// The angle.
+    pub angle: Angle,
 }
