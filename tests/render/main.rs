@@ -9,5 +9,6 @@ mod files;
 mod honest;
 mod lights;
 mod meshes;
+mod packets;
 mod shapes;
 mod slab;

@@ -79,7 +79,7 @@ const ACCEPTANCE_DEG: f64 = 1.0;
 const FIELD_DEG: f64 = 60.0;
 const FISHEYE_DEG: f64 = 180.0;
 /// Most points of a grid.
-const MOST_POINTS: u64 = 10_000_000;
+const MOST_POINTS: u64 = 100_000;
 
 impl Builder<'_> {
     /// The instruments; `surfaces` are the scene's surfaces that each described shape is.
