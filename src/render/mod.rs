@@ -20,7 +20,7 @@
 //! | [`emission`] | what a surface emits |
 //! | [`accelerate`], [`tree`] | all surfaces, and the search for the one that a ray meets |
 //! | [`mesh`], [`placed`] | meshes of triangles, and where they stand |
-//! | [`format`] | files of meshes |
+//! | [`format`](mod@format) | files of meshes |
 //! | [`description`] | scenes in TOML |
 //! | [`scene`] | surfaces, materials and lights together |
 //! | [`sampler`] | well-spread random numbers |

@@ -1,12 +1,12 @@
 //! The search among many boxes: an eight-wide bounding-volume hierarchy of the crate `obvhs`, in single precision, made safe for tests
 //! in double precision at its leaves.
 //!
-//! - The boxes are moved and scaled so that all of them lie in [−1, 1]³, whatever their size and place, and widened by [`PAD`], which
+//! - The boxes are moved and scaled so that all of them lie in [−1, 1]³, whatever their size and place, and widened by `PAD`, which
 //!   is more than everything that is rounded on the way: the boxes, the ray's origin and direction, the slab test. A ray that the
 //!   leaf's own test would find is therefore never turned away before.
 //! - A ray from far away starts where it enters the outermost box.
 //! - The crate takes no notice of boxes that end nearer than 1e-4 along the ray's parameter, and replaces the inverse of small
-//!   components of the direction. So the direction handed to it is short ([`STEP`]), its inverse is ours, and the ray starts a little
+//!   components of the direction. So the direction handed to it is short (`STEP`), its inverse is ours, and the ray starts a little
 //!   before its origin.
 //!
 //! Reference: H. Ylitie, T. Karras, S. Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.

@@ -5,7 +5,7 @@
 //! | [`ply`] | Stanford PLY, text and binary of both byte orders: one mesh |
 //! | [`obj`] | Wavefront OBJ: one mesh per object and material |
 //!
-//! Faces with more than three corners are cut into triangles ([`triangulate`]). Memory is bounded by a multiple of the file's size,
+//! Faces with more than three corners are cut into triangles (fans from a corner that sees all the others). Memory is bounded by a multiple of the file's size,
 //! whatever the file announces.
 
 pub mod obj;

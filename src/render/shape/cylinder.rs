@@ -3,7 +3,7 @@
 //! | | |
 //! |---|---|
 //! | crossing | stable quadratic across the axis; the capped one is the common part of an infinite cylinder and a slab, which no ray inside can miss |
-//! | uv | on the tube (φ/2π, height/length), on the caps (φ/2π, r/R); φ from the first tangent of the axis ([`tangents`](crate::geometry::direction::tangents)) |
+//! | uv | on the tube (φ/2π, height/length), on the caps (φ/2π, r/R); φ from the first tangent of the axis ([`tangents`]) |
 //! | tangent | around the axis, towards greater φ |
 //! | face | 0 the tube, 1 the cap at the base, 2 the one at the other end |
 //! | directions | to points uniform over the area: the tube may hide itself |

@@ -1,7 +1,7 @@
 //! Disk, or annulus where it has an inner radius; its outside is where its normal points.
 //!
 //! `uv` are (φ/2π, (r − r_inner)/(R − r_inner)), φ from the first tangent of the normal
-//! ([`tangents`](crate::geometry::direction::tangents)); the tangent runs around, towards greater φ. Directions are drawn to points
+//! ([`tangents`]); the tangent runs around, towards greater φ. Directions are drawn to points
 //! uniform over the area.
 
 use std::f64::consts::{PI, TAU};

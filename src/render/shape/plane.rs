@@ -1,7 +1,7 @@
 //! Plane without bounds; its outside is where its normal points.
 //!
 //! `uv` are metres from the given point along the tangent and across it (both as
-//! [`tangents`](crate::geometry::direction::tangents) gives them). Its area is infinite: no point can be drawn from it, but
+//! [`tangents`] gives them). Its area is infinite: no point can be drawn from it, but
 //! directions towards it can, with density cosθ/π about the perpendicular. Everything on its side of the horizon meets it:
 //!
 //! ```text
