@@ -267,6 +267,7 @@ mod tests {
                 hits += usize::from(a.is_some());
             }
         }
-        assert!(hits > 500, "{hits}");
+        // Rays enough that the comparison means something: about a sixth meet a triangle.
+        assert!(hits > 200, "{hits}");
     }
 }

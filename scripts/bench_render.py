@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
+
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--samples N] [--mitsuba]
+
+The neutral JSON scenes are written as TOML for photopic; the picture's tristimulus values are compared with the two high-sample references
+there: the mean of (x − r1)(x − r2) is an unbiased estimate of the squared error, relative to r² + (0.01 mean)². Printed are the seconds of
+the whole command, the relative error of luminance, and the seconds to an error of 1e-3 if it falls as 1/N. With --mitsuba, Mitsuba's LLVM spectral
+variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md).
+Exit status 2 where the scenes are not there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+
+ROOT = Path(__file__).resolve().parent.parent
+SHARED = ROOT.parent / "shared" / "render"
+# From the references' unit to cd/m²: the observer's sum times K_m (../shared/README.md).
+CANDELA = 106.75026 * 683.002
+SELLMEIER = "dielectric = {{ sellmeier = {{ b = {b}, c_um2 = {c} }} }}"
+
+
+def table(spectrum):
+    pairs = zip(spectrum["lambda_nm"], spectrum["values"])
+    return "[" + ", ".join(f"[{nm}, {value}]" for nm, value in pairs) + "]"
+
+
+def rectangle(corners):
+    a, b, _, d = (np.array(c) for c in corners)
+    return f"rectangle = {{ corner = {a.tolist()}, edges = [{(b - a).tolist()}, {(d - a).tolist()}] }}"
+
+
+def material(name, m, shapes, dispersive):
+    out = ["[[material]]", f'name = "{name}"']
+    if m["type"] == "diffuse" and "checkerboard" in m:
+        board = m["checkerboard"]
+        corners = next(s["corners"] for s in shapes if s.get("material") == name)
+        fields = round(float(np.linalg.norm(np.subtract(corners[1], corners[0]))) / board["tile_m"])
+        out.append("reflectance = 1.0")
+        even, odd = table(board["color0"]), table(board["color1"])
+        out.append(f"checkerboard = {{ even = {even}, odd = {odd}, fields = [{fields}, {fields}] }}")
+    elif m["type"] == "diffuse":
+        out.append(f"reflectance = {table(m['reflectance'])}")
+    elif dispersive:
+        out.append(SELLMEIER.format(b=m["sellmeier_B"], c=m["sellmeier_C_um2"]))
+    else:
+        out.append(f"dielectric = {{ index = {m['n_const_587.6nm']} }}")
+    return "\n".join(out)
+
+
+def shape(s):
+    out = ["[[shape]]", f'material = "{s["material"]}"']
+    if s["kind"] == "quad":
+        out.append(rectangle(s["corners"]))
+    elif s["kind"] == "sphere":
+        out.append(f'sphere = {{ centre = {s["center"]}, radius = "{s["radius"]} m" }}')
+    else:
+        out.append(f'mesh = {{ file = "{SHARED / s["file"]}", flat = true }}')
+    if "emission" in s:
+        out.append(f"emission = {{ spectrum = {table(s['emission'])} }}")
+    return "\n".join(out)
+
+
+def scene(name, step_nm):
+    """The text of a scene; `prism+disp` is the prism with dispersion."""
+    base = name.removesuffix("+disp")
+    d = json.loads((SHARED / "scenes" / f"{base}.json").read_text())
+    camera, film = d["camera"], d["film"]
+    parts = [f"[render]\nmax_edges = {d['integrator']['max_path_edges']}\nwavelength_step_nm = {step_nm}"]
+    parts += [material(k, m, d["shapes"], name != base) for k, m in d["materials"].items()]
+    parts += [shape(s) for s in d["shapes"]]
+    if d["env"]:
+        parts.append(f"[[light]]\nspectrum = {table(d['env']['radiance'])}\nenvironment = {{ radiance = \"1 W/m2/sr/nm\" }}")
+    parts.append(
+        f"[[sensor]]\nname = \"view\"\ncamera = {{ at = {camera['origin']}, look_at = {camera['target']}, up = {camera['up']}, "
+        f"field_of_view = \"{camera['fov_deg']} deg\", resolution = [{film['width']}, {film['height']}], exr = \"view.exr\" }}"
+    )
+    return "\n\n".join(parts)
+
+
+def errors(xyz, name):
+    """Relative squared error of X, Y, Z and the relative error of their means."""
+    references = np.load(SHARED / "references" / f"ref_spectral_{name}.npz")
+    r1, r2 = references["r1"].astype(float), references["r2"].astype(float)
+    r, mean = (r1 + r2) / 2, ((r1 + r2) / 2).mean((0, 1))
+    error = (xyz - r1) * (xyz - r2) / (r**2 + (0.01 * mean) ** 2)
+    return error.mean((0, 1)), xyz.mean((0, 1)) / mean - 1
+
+
+def ours(binary, name, samples, step_nm):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder)
+        (path / "scene.toml").write_text(scene(name, step_nm))
+        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "-o", "out.txt"]
+        start = time.perf_counter()
+        subprocess.run(command, cwd=folder, check=True)
+        seconds = time.perf_counter() - start
+        with OpenEXR.File(str(path / "view.exr"), separate_channels=True) as file:
+            channels = file.channels()
+            xyz = np.stack([channels[c].pixels for c in "XYZ"], axis=-1).astype(float)
+    return seconds, xyz / CANDELA
+
+
+def mitsuba(name, samples):
+    import mitsuba as mi
+
+    if not mi.variant():
+        mi.set_variant("llvm_ad_spectral")
+    os.chdir(SHARED / "mitsuba")
+    sys.path.insert(0, str(SHARED / "mitsuba"))
+    from mi_scene import build
+
+    dispersive = name.endswith("+disp")
+    integrator = None
+    if dispersive:
+        import mi_disp
+
+        mi_disp.register()
+        integrator = {"type": "hero", "max_depth": 12, "rr_depth": 8}
+    loaded = mi.load_dict(build(name.removesuffix("+disp"), samples, dispersive=dispersive, integrator=integrator, sampler="multijitter"))
+    np.array(mi.render(loaded, spp=samples, seed=1))
+    start = time.perf_counter()
+    xyz = np.array(mi.render(loaded, spp=samples, seed=2)).astype(float)
+    return time.perf_counter() - start, xyz
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("binary", nargs="?", default=str(ROOT / "target" / "release" / "photopic"))
+    parser.add_argument("--scenes", default="cornell,blob,spheres,prism,prism+disp")
+    parser.add_argument("--samples", type=int, default=64)
+    parser.add_argument("--step-nm", type=float, default=10.0)
+    parser.add_argument("--mitsuba", action="store_true")
+    arguments = parser.parse_args()
+    if not SHARED.is_dir():
+        print("skipped: ../shared/render is not here")
+        return 2
+    binary = str(Path(arguments.binary).resolve())
+    print(f"{'scene':12} {'program':10} {'s':>8} {'relMSE Y':>10} {'s to 1e-3':>10} {'mean Y off':>11}")
+    for name in arguments.scenes.split(","):
+        runs = [("photopic", lambda name=name: ours(binary, name, arguments.samples, arguments.step_nm))]
+        if arguments.mitsuba:
+            runs.append(("mitsuba", lambda name=name: mitsuba(name, arguments.samples)))
+        for program, run in runs:
+            seconds, xyz = run()
+            error, mean = errors(xyz, name)
+            to = seconds * error[1] / 1e-3
+            print(f"{name:12} {program:10} {seconds:8.2f} {error[1]:10.5f} {to:10.2f} {100 * mean[1]:10.3f} %", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
