@@ -117,6 +117,11 @@ fn mistakes_are_told_with_file_line_and_column() {
         let path = scene(&folder, &LAMP.replacen(from, to, 1));
         photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message)).stdout("");
     }
+    let path = scene(&folder, &LAMP.replace("at = [0, 0, 0] }", "at = [0, 0, nan] }"));
+    photopic().arg("render").arg(&path).assert().code(2).stderr(contains("found `nan`; expected a finite number"));
+    let dark = &LAMP[LAMP.find("[[sensor]]").expect("a sensor")..];
+    let out = json(photopic().arg("render").arg(scene(&folder, dark)).args(["--json", "--meter-samples", "32"]));
+    assert_eq!(out["findings"][0]["code"], "R002");
     let path = scene(&folder, "");
     photopic().arg("render").arg(&path).assert().code(2).stderr(contains("missing field `sensor`"));
     photopic().args(["render", "nowhere.toml"]).assert().code(2).stderr(contains("cannot be read"));

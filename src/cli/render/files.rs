@@ -13,7 +13,7 @@ use crate::constants::SecondRadiation;
 use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::format::{self, ReadOptions};
-use crate::render::build::Files;
+use crate::render::build::{Built, Files};
 use crate::render::format as mesh;
 use crate::render::mesh::MeshData;
 use crate::render::reading::Reading;
@@ -101,20 +101,23 @@ impl Files for Scene {
     }
 }
 
-/// What is to be said of readings beside their figures.
-pub(super) fn findings(path: &str, readings: &[Reading]) -> Vec<Finding> {
-    (readings.iter().filter(|r| r.faults.count() > 0))
-        .map(|r| {
-            let f = &r.faults;
-            let message = format!(
-                "sensor `{}`: {} samples were left out: {} with a NaN, {} infinite, {} negative",
-                r.name,
-                f.count(),
-                f.nan,
-                f.infinite,
-                f.negative
-            );
-            Finding::warning("R001", message).at(Location::default().in_file(path))
-        })
-        .collect()
+/// What is to be said of a scene's readings beside their figures.
+pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<Finding> {
+    let dark = built.scene.lights().is_empty().then(|| {
+        let finding = Finding::warning("R002", "nothing shines in the scene: every reading is 0");
+        finding.at(Location::default().in_file(path)).hint("a [[light]], or a shape with an emission")
+    });
+    let faults = (readings.iter().filter(|r| r.faults.count() > 0)).map(|r| {
+        let f = &r.faults;
+        let message = format!(
+            "sensor `{}`: {} samples were left out: {} with a NaN, {} infinite, {} negative",
+            r.name,
+            f.count(),
+            f.nan,
+            f.infinite,
+            f.negative
+        );
+        Finding::warning("R001", message).at(Location::default().in_file(path))
+    });
+    dark.into_iter().chain(faults).collect()
 }

@@ -131,7 +131,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
     let work = Work::new(path, &overrides)?;
     if a.check {
         let result = (report::contents(&work.built), report::contents_text(&work.built));
-        return work.print("render", result, a.json, a.output.as_deref());
+        return work.print("render", result, a.json, a.output.as_deref(), Vec::new());
     }
     let place = a.checkpoint.as_deref().or(a.resume.as_deref()).or(a.output.as_deref().filter(|_| a.shard.is_some()));
     let share = a.shard.unwrap_or(Share::WHOLE);

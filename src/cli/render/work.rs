@@ -13,6 +13,7 @@ use super::{files, pictures};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
+use crate::finding::Finding;
 use crate::render::build::{Built, Kind, build};
 use crate::render::description::{self, Description};
 use crate::render::estimate::REPLICATES;
@@ -188,12 +189,13 @@ impl Work {
         output: Option<&Path>,
         talk: Talk,
     ) -> Result<(), Failure> {
-        Notes::new(&[], talk).print(&files::findings(&self.path, &done.readings));
+        let findings = files::findings(&self.path, &self.built, &done.readings);
+        Notes::new(&[], talk).print(&findings);
         let seconds = self.begun.elapsed().as_secs_f64();
         let result = report::result(&self.built, &done.readings, &done.written, seconds);
         let mut text = report::text(&self.built, &done.readings);
         done.written.iter().for_each(|w| text.push_str(&format!("written: {w}\n")));
-        self.print(command, (result, text), as_json, output)?;
+        self.print(command, (result, text), as_json, output, findings)?;
         let reached = done.readings.iter().all(|r| r.target.is_none_or(|t| t.1));
         if reached { Ok(()) } else { Err(Failure::No) }
     }
@@ -205,6 +207,7 @@ impl Work {
         (result, text): (Value, String),
         as_json: bool,
         output: Option<&Path>,
+        findings: Vec<Finding>,
     ) -> Result<(), Failure> {
         let mut sink = Sink::open(output, &self.read)?;
         if as_json {
@@ -218,6 +221,7 @@ impl Work {
             let mut envelope = Envelope::begin(&mut sink, command, &settings)?;
             self.inputs.iter().for_each(|i| envelope.input(i.clone()));
             envelope.result(&result)?;
+            findings.into_iter().for_each(|f| envelope.finding(f));
             envelope.end()?;
         } else {
             sink.write_all(text.as_bytes())?;

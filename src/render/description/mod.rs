@@ -19,6 +19,8 @@ use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use light::Light;
 use material::Material;
@@ -135,7 +137,27 @@ impl Description {
     /// # Errors
     /// The first mistake in TOML, in keys, in types and in units.
     pub fn parse(text: &str) -> Result<Self, Error> {
+        if let Ok(table) = DeTable::parse(text) {
+            let found = table.get_ref().iter().find_map(|(_, value)| not_finite(value));
+            if let Some(span) = found {
+                let found = text.get(span.clone()).unwrap_or_default();
+                return Err(Error::at(text, &span, format!("found `{found}`; expected a finite number")));
+            }
+        }
         toml::from_str(text).map_err(|e| Error::at(text, &e.span().unwrap_or_default(), e.message()))
+    }
+}
+
+/// The place of the first number that is none or infinite, which TOML allows and no quantity of a scene is.
+fn not_finite(value: &Spanned<DeValue<'_>>) -> Option<Range<usize>> {
+    match value.get_ref() {
+        DeValue::Float(number) => {
+            let parsed = number.as_str().replace('_', "").parse::<f64>();
+            parsed.is_ok_and(|n| !n.is_finite()).then(|| value.span())
+        }
+        DeValue::Array(items) => items.iter().find_map(not_finite),
+        DeValue::Table(table) => table.iter().find_map(|(_, value)| not_finite(value)),
+        _ => None,
     }
 }
 
@@ -201,6 +223,10 @@ illuminance = { at = [1, 0.5, 0] }
         let message = refused("name = \"middle\"\n", "");
         assert!(message.contains("missing field `name`"), "{message}");
         assert!(refused("[render]", "[render").starts_with("3:"));
+        for number in ["nan", "-inf", "1e999"] {
+            let message = refused("[0, 1, 0]", &format!("[0, {number}, 0]"));
+            assert_eq!(message, format!("13:59: found `{number}`; expected a finite number"));
+        }
     }
 
     #[test]
