@@ -11,7 +11,7 @@ use photopic::geometry::direction::tangents;
 use photopic::math::random::Stream;
 use photopic::render::accelerate::Surfaces;
 use photopic::render::format::ply;
-use photopic::render::mesh::Mesh;
+use photopic::render::mesh::{Mesh, MeshData};
 use photopic::render::placed::PlacedMesh;
 use photopic::render::ray::Ray;
 use rayon::ThreadPoolBuilder;
@@ -37,14 +37,15 @@ const CASES: [Case; 2] = [
 /// Rays in the picture's rows and columns.
 const SIZE: usize = 512;
 
-fn mesh(case: Case) -> Option<Mesh> {
+fn data(case: Case) -> Option<MeshData> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/render/meshes");
     let bytes = std::fs::read(root.join(format!("{}.ply", case.name))).ok()?;
-    Some(Mesh::new(ply::read(&bytes).expect("a mesh").mesh).expect("sound"))
+    Some(ply::read(&bytes).expect("a mesh").mesh)
 }
 
 fn surfaces(case: Case) -> Option<Surfaces> {
-    let placed = PlacedMesh::new(Arc::new(mesh(case)?), DAffine3::IDENTITY).expect("regular");
+    let mesh = Mesh::new(data(case)?).expect("sound");
+    let placed = PlacedMesh::new(Arc::new(mesh), DAffine3::IDENTITY).expect("regular");
     Some(Surfaces::new(vec![Arc::new(placed)]))
 }
 
@@ -105,8 +106,7 @@ fn incoherent<const THREADS: usize>(bencher: Bencher, case: Case) {
 /// The tree of a mesh, with two threads.
 #[divan::bench(args = CASES, sample_count = 5)]
 fn build(bencher: Bencher, case: Case) {
-    if let Some(mesh) = mesh(case) {
-        let data = mesh.data().clone();
+    if let Some(data) = data(case) {
         bencher.bench_local(|| Mesh::new(data.clone()));
     }
 }

@@ -1,10 +1,11 @@
 //! Meshes of triangles: their own coordinates, a tree to search them, the surface at a crossing.
 //!
-//! Corners are kept in `f64` (24 bytes for two triangles), normals and texture coordinates in `f32`. A tree takes several times its
+//! Every triangle has its [`corners`](super::corners) beside those of its neighbours; normals and texture coordinates are kept in `f32`. A tree takes several times its
 //! final size while it is built, so large meshes are first cut into blocks that have trees of their own.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use super::corners::Corners;
 use super::ray::{Crossing, Ray};
 use super::shape::Bounds;
 use super::shape::rounding::cross;
@@ -62,8 +63,12 @@ const BLOCK: usize = 1 << 20;
 /// A mesh in its own coordinates, ready to be searched; placed in the world any number of times.
 #[derive(Debug)]
 pub struct Mesh {
-    /// Triangles are in the order of the tree.
-    data: MeshData,
+    /// Of the triangles in the order of the tree.
+    corners: Corners,
+    /// Which normals and texture coordinates each triangle has; empty where there are none.
+    names: Vec<[u32; 3]>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
     skipped: usize,
     bounds: Bounds,
     blocks: Vec<Block>,
@@ -136,14 +141,17 @@ impl Mesh {
                 boxes.push(bounds);
             }
         }
+        let corners = Corners::new(&data.positions, &data.triangles);
+        let names = if data.normals.is_empty() && data.uvs.is_empty() { Vec::new() } else { data.triangles };
         let bounds = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
-        Ok(Self { data, skipped, bounds, blocks, tree: Tree::new(&boxes) })
+        let (normals, uvs, tree) = (data.normals, data.uvs, Tree::new(&boxes));
+        Ok(Self { corners, names, normals, uvs, skipped, bounds, blocks, tree })
     }
 
-    /// What it is made of; triangles in the mesh's own order.
+    /// The number of its triangles.
     #[must_use]
-    pub fn data(&self) -> &MeshData {
-        &self.data
+    pub fn triangles(&self) -> u32 {
+        self.corners.len() as u32
     }
 
     /// How many triangles were left out for want of area or of finite corners.
@@ -161,7 +169,7 @@ impl Mesh {
     /// The corners of a triangle, m.
     #[must_use]
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize])
+        self.corners.of(triangle)
     }
 
     /// The first crossing with `near < t < far` of a ray in the mesh's coordinates, whose direction need not be a unit vector: `t`
@@ -205,20 +213,20 @@ impl Mesh {
     /// Texture coordinates at the weights `uv` of a triangle's second and third corner; those weights where the mesh has none.
     #[must_use]
     pub fn uv(&self, triangle: u32, uv: DVec2) -> DVec2 {
-        if self.data.uvs.is_empty() {
+        if self.uvs.is_empty() {
             return uv;
         }
-        let [a, b, c] = self.data.triangles[triangle as usize].map(|i| self.data.uvs[i as usize].as_dvec2());
+        let [a, b, c] = self.names[triangle as usize].map(|i| self.uvs[i as usize].as_dvec2());
         (1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c
     }
 
     /// The interpolated normal, of any length; `None` where the mesh has none.
     #[must_use]
     pub fn shading(&self, triangle: u32, uv: DVec2) -> Option<DVec3> {
-        if self.data.normals.is_empty() {
+        if self.normals.is_empty() {
             return None;
         }
-        let [a, b, c] = self.data.triangles[triangle as usize].map(|i| self.data.normals[i as usize].as_dvec3());
+        let [a, b, c] = self.names[triangle as usize].map(|i| self.normals[i as usize].as_dvec3());
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
@@ -227,10 +235,10 @@ impl Mesh {
     #[must_use]
     pub fn across(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
-        if self.data.uvs.is_empty() {
+        if self.uvs.is_empty() {
             return b - a;
         }
-        let [p, q, r] = self.data.triangles[triangle as usize].map(|i| self.data.uvs[i as usize].as_dvec2());
+        let [p, q, r] = self.names[triangle as usize].map(|i| self.uvs[i as usize].as_dvec2());
         let (q, r) = (q - p, r - p);
         let determinant = q.x * r.y - q.y * r.x;
         let along = ((b - a) * r.y - (c - a) * q.y) / determinant;

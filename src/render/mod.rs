@@ -31,12 +31,14 @@
 pub mod accelerate;
 pub mod bands;
 pub mod build;
+mod corners;
 pub mod description;
 pub mod emission;
 pub mod estimate;
 pub mod film;
 pub mod form_factor;
 pub mod format;
+mod hierarchy;
 pub mod integrator;
 pub mod light;
 pub mod material;

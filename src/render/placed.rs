@@ -99,7 +99,7 @@ impl PlacedMesh {
                 sum += 0.5 * cross(p, q).length();
                 sum
             };
-            (0..self.mesh.data().triangles.len() as u32).map(&mut add).collect()
+            (0..self.mesh.triangles()).map(&mut add).collect()
         })
     }
 }

@@ -1,64 +1,34 @@
-//! The search among many boxes: an eight-wide bounding-volume hierarchy of the crate `obvhs`, in single precision, made safe for tests
-//! in double precision at its leaves.
+//! The search among many boxes: a [`hierarchy`](super::hierarchy) in single precision, made safe for tests in double precision at its
+//! leaves.
 //!
 //! - The boxes are moved and scaled so that all of them lie in [−1, 1]³, whatever their size and place, and widened by `PAD`, which
-//!   is more than everything that is rounded on the way: the boxes, the ray's origin and direction, the slab test. A ray that the
+//!   is more than everything that is rounded on the way: the boxes, the planes that nodes
+//!   keep of them, the ray's origin and direction, the slab test. A ray that the
 //!   leaf's own test would find is therefore never turned away before.
 //! - A ray from far away starts where it enters the outermost box.
-//! - The crate takes no notice of boxes that end nearer than 1e-4 along the ray's parameter, and replaces the inverse of small
-//!   components of the direction. So the direction handed to it is short (`STEP`), its inverse is ours, and the ray starts a little
-//!   before its origin.
-//!
-//! Reference: H. Ylitie, T. Karras, S. Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017.
+//! - The ray starts a little before its origin, so that boxes about the origin lie ahead.
 
-use glam::{DVec3, Vec3A};
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
-use obvhs::ploc::PlocBuilder;
-use obvhs::ray::{Ray as Traversed, RayHit};
-use obvhs::{Boundable, BvhBuildParams};
+use glam::DVec3;
 
+use super::hierarchy::{Hierarchy, Line};
 use super::shape::Bounds;
 
 /// How far boxes are widened, and how far before its origin a ray starts; the outermost box has a half-width of 1.
 const PAD: f64 = 4e-6;
-/// Length of the direction that is handed to the crate.
-const STEP: f64 = 1.0 / 1024.0;
-/// Groups of nodes that the crate's stack can hold; a hierarchy as deep as this is divided.
-const DEEPEST: usize = 30;
-/// Boxes in a leaf at most.
-const LEAF: u32 = 3;
 /// The greatest inverse of a direction's component; larger ones overflow in the slab test.
 const STEEPEST: f32 = 1e30;
 
 /// Boxes, each with the number that it was given.
 #[derive(Debug)]
 pub struct Tree {
-    /// One hierarchy, or several where one would be too deep.
-    parts: Vec<Part>,
+    hierarchy: Hierarchy,
+    /// The number of the box at each place of the hierarchy; empty where every number is its place.
+    numbers: Vec<u32>,
     centre: DVec3,
     /// From metres to the frame in which the outermost box is [−1, 1]³ or smaller.
     scale: f64,
     /// The outermost box, in that frame, widened.
     reach: DVec3,
-}
-
-#[derive(Debug)]
-struct Part {
-    bvh: CwBvh,
-    /// The number of the box behind each leaf.
-    numbers: Vec<u32>,
-}
-
-/// A box of the hierarchy, which the crate asks for.
-struct Leaf(Aabb);
-
-impl Boundable for Leaf {
-    fn aabb(&self) -> Aabb {
-        self.0
-    }
 }
 
 impl Tree {
@@ -67,25 +37,24 @@ impl Tree {
     pub fn new(boxes: &[Bounds]) -> Self {
         let all = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
         if boxes.is_empty() {
-            return Self { parts: Vec::new(), centre: DVec3::ZERO, scale: 1.0, reach: DVec3::ZERO };
+            return Self {
+                hierarchy: Hierarchy::default(),
+                numbers: Vec::new(),
+                centre: DVec3::ZERO,
+                scale: 1.0,
+                reach: DVec3::ZERO,
+            };
         }
         // Halved before they are added: the sum of the largest numbers would overflow.
         let centre = 0.5 * all.min + 0.5 * all.max;
         let half = (0.5 * all.max - 0.5 * all.min).max_element();
         let scale = if half > 0.0 { 1.0 / half } else { 1.0 };
-        let leaves: Vec<Leaf> = boxes
-            .iter()
-            .map(|b| {
-                let (min, max) = ((b.min - centre) * scale, (b.max - centre) * scale);
-                Leaf(Aabb::new((min - PAD).as_vec3a(), (max + PAD).as_vec3a()))
-            })
-            .collect();
-        #[expect(clippy::cast_possible_truncation, reason = "the crate numbers boxes by u32")]
-        let numbers = (0..leaves.len() as u32).collect();
-        let mut parts = Vec::new();
-        build(&leaves, numbers, &mut parts);
+        let (hierarchy, numbers) = Hierarchy::new(boxes.iter().map(|b| {
+            let (min, max) = ((b.min - centre) * scale, (b.max - centre) * scale);
+            ((min - PAD).as_vec3a(), (max + PAD).as_vec3a())
+        }));
         let reach = (0.5 * all.max - 0.5 * all.min) * scale + 2.0 * PAD;
-        Self { parts, centre, scale, reach }
+        Self { hierarchy, numbers, centre, scale, reach }
     }
 
     /// Calls `test` with the numbers of boxes that the ray (a direction of any length) may meet at parameters in (0, `far`), roughly from
@@ -100,28 +69,21 @@ impl Tree {
     ) -> f64 {
         let Some(local) = self.local(origin, direction, far) else { return far };
         let mut best = far;
-        for part in &self.parts {
-            let mut ray = local.ray;
-            ray.tmax = local.parameter(best);
-            part.bvh.ray_traverse(ray, &mut RayHit::none(), |_, leaf| match test(part.number(leaf), best) {
-                Some(t) => {
-                    best = t;
-                    local.parameter(t)
-                }
-                None => f32::INFINITY,
-            });
-        }
+        self.hierarchy.closest(local.line, local.parameter(far), |place| {
+            best = test(self.number(place), best)?;
+            Some(local.parameter(best))
+        });
         best
     }
 
     /// Whether `test` is true for any of the boxes that the ray may meet at parameters in (0, `far`).
     pub fn any(&self, origin: DVec3, direction: DVec3, far: f64, mut test: impl FnMut(usize) -> bool) -> bool {
         let Some(local) = self.local(origin, direction, far) else { return false };
-        self.parts.iter().any(|part| {
-            !part.bvh.ray_traverse_miss(local.ray, |_, leaf| {
-                if test(part.number(leaf)) { f32::NEG_INFINITY } else { f32::INFINITY }
-            })
-        })
+        self.hierarchy.any(local.line, local.parameter(far), |place| test(self.number(place)))
+    }
+
+    fn number(&self, place: usize) -> usize {
+        self.numbers.get(place).map_or(place, |&number| number as usize)
     }
 
     /// The ray in the hierarchy's frame, begun at the outermost box; `None` where it passes by.
@@ -138,103 +100,43 @@ impl Tree {
             return None;
         }
         let length = d.length();
-        let per_parameter = length / STEP;
         // Back by PAD, so that boxes about the origin lie ahead.
         let start = o + d * (enter - PAD / length);
-        let unit = (d * (STEP / length)).as_vec3a();
+        let unit = (d / length).as_vec3();
         let invert = |x: f32| if x.abs() < 1.0 / STEEPEST { STEEPEST.copysign(x) } else { 1.0 / x };
-        let ray = Traversed {
-            origin: start.as_vec3a(),
-            direction: unit,
-            inv_direction: Vec3A::new(invert(unit.x), invert(unit.y), invert(unit.z)),
-            tmin: 0.0,
-            tmax: f32::INFINITY,
-        };
-        let mut local = Local { ray, enter, per_parameter };
-        local.ray.tmax = local.parameter(far);
-        Some(local)
+        let line = Line { origin: start.as_vec3().to_array(), inverse: unit.to_array().map(invert) };
+        Some(Local { line, enter, length })
     }
 
     /// Numbers the boxes anew, in the order of the leaves, so that boxes close together have close numbers; the old number of each.
     pub fn renumber(&mut self) -> Vec<u32> {
-        let old: Vec<u32> = self.parts.iter().flat_map(|part| part.numbers.iter().copied()).collect();
-        for (number, new) in (0..).zip(self.parts.iter_mut().flat_map(|part| &mut part.numbers)) {
-            *new = number;
-        }
-        old
+        std::mem::take(&mut self.numbers)
     }
 
     /// Bytes of the hierarchy.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let of = |p: &Part| size_of_val(p.bvh.nodes.as_slice()) + 4 * p.numbers.len();
-        self.parts.iter().map(of).sum()
+        self.hierarchy.bytes() + size_of_val(self.numbers.as_slice())
     }
 }
 
-impl Part {
-    fn number(&self, leaf: usize) -> usize {
-        self.numbers[leaf] as usize
-    }
-}
-
-/// A ray in the frame of a hierarchy.
+/// A ray in the hierarchy's frame.
 struct Local {
-    ray: Traversed,
+    line: Line,
     /// The parameter of the caller's ray at which it begins, but for [`PAD`].
     enter: f64,
-    /// From the caller's parameter to the crate's.
-    per_parameter: f64,
+    /// Length of the caller's direction in the frame.
+    length: f64,
 }
 
 impl Local {
-    /// The crate's parameter for the caller's, rounded away from the origin.
+    /// The distance in the frame of the caller's parameter, rounded away from the origin.
     fn parameter(&self, t: f64) -> f32 {
-        let exact = (t - self.enter) * self.per_parameter + 2.0 * PAD / STEP;
+        let exact = (t - self.enter) * self.length + 2.0 * PAD;
         #[expect(clippy::cast_possible_truncation, reason = "and widened by more than the rounding")]
         let rounded = (exact * (1.0 + 2.0 * f64::from(f32::EPSILON))) as f32;
         rounded
     }
-}
-
-/// Builds a hierarchy, and two of half the boxes each where it would be too deep for the crate's stack.
-fn build(leaves: &[Leaf], numbers: Vec<u32>, parts: &mut Vec<Part>) {
-    // As the crate's own `build_cwbvh` does, but for a check in debug builds that panics where a hierarchy is too deep.
-    let params = BvhBuildParams::medium_build();
-    #[expect(clippy::cast_possible_truncation, reason = "the crate numbers boxes by u32")]
-    let order = (0..leaves.len() as u32).collect();
-    let mut binary = PlocBuilder::with_capacity(leaves.len()).build(
-        params.ploc_search_distance,
-        leaves,
-        order,
-        params.sort_precision,
-        params.search_depth_threshold,
-    );
-    ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
-    let bvh = bvh2_to_cwbvh(&binary, LEAF, true, false);
-    if depth(&bvh) > DEEPEST && leaves.len() > 1 {
-        let (near, far) = leaves.split_at(leaves.len() / 2);
-        let (first, second) = numbers.split_at(near.len());
-        build(near, first.to_vec(), parts);
-        build(far, second.to_vec(), parts);
-        return;
-    }
-    let numbers = bvh.primitive_indices.iter().map(|i| numbers[*i as usize]).collect();
-    parts.push(Part { bvh: CwBvh { primitive_indices: Vec::new(), exact_node_aabbs: None, ..bvh }, numbers });
-}
-
-/// Levels of nodes.
-fn depth(bvh: &CwBvh) -> usize {
-    let mut deepest = 0;
-    let mut stack = vec![(0_usize, 1_usize)];
-    while let Some((node, level)) = stack.pop() {
-        let Some(found) = bvh.nodes.get(node) else { continue };
-        deepest = deepest.max(level);
-        let children = found.imask.count_ones() as usize;
-        let base = found.child_base_idx as usize;
-        stack.extend((0..children).map(|child| (base + child, level + 1)));
-    }
-    deepest
 }
 
 #[cfg(test)]
@@ -315,7 +217,7 @@ mod tests {
 
     /// Boxes one inside the other, each a third of the next, make a hierarchy that is a chain.
     #[test]
-    fn a_deep_hierarchy_is_divided() {
+    fn a_deep_hierarchy_is_searched() {
         let boxes: Vec<Bounds> = (0..600)
             .map(|i| {
                 let half = DVec3::splat(1.05_f64.powi(i) * 1e-6);
@@ -333,7 +235,6 @@ mod tests {
             });
             assert!(told, "box {i}");
         }
-        assert!(tree.parts.iter().all(|p| depth(&p.bvh) <= DEEPEST));
     }
 
     #[test]

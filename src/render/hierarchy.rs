@@ -1,0 +1,289 @@
+//! A bounding-volume hierarchy with eight boxes to a node, tested together in single precision.
+//!
+//! The crate `obvhs` sorts the boxes into a binary hierarchy (PLOC with reinsertion); its nodes are then drawn together until each has up
+//! to eight children, the largest first. Boxes are kept as steps of a 254th of their node, rounded outwards, so that a node is two cache
+//! lines: rays without order spend their time waiting for nodes.
+//!
+//! References: D. Meister & J. Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction*, TVCG 24(3)
+//! (2018); H. Ylitie, T. Karras, S. Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017; I. Wald, C. Benthin, S. Boulos, *Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs*,
+//! RT 2008.
+
+use std::ops::Range;
+
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::PlocBuilder;
+use obvhs::{Boundable, BvhBuildParams};
+use smallvec::SmallVec;
+use wide::{CmpLe, f32x8, i32x8, u8x16, u16x8};
+
+/// Boxes in a leaf at most.
+const LEAF: usize = 3;
+/// Marks a leaf among children; below it are the place of its first box (28 bits) and its number of boxes (3 bits).
+const IS_LEAF: u32 = 1 << 31;
+/// Steps across a node: one less than can be counted, for the rounding of the last.
+const STEPS: f32 = 254.0;
+/// Open children that a search holds without allocating; only chains of boxes one inside the other need more.
+const OPEN: usize = 96;
+
+/// Boxes in an order of its own: each has a place.
+#[derive(Debug, Default)]
+pub(super) struct Hierarchy {
+    nodes: Vec<Node>,
+}
+
+/// Eight boxes, and what is in them.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+struct Node {
+    /// The least corner of all.
+    origin: [f32; 3],
+    /// What the boxes' planes are counted in, from the origin.
+    step: [f32; 3],
+    /// For x, y and z: the least of each box, then the greatest of each.
+    planes: [u8x16; 3],
+    children: [u32; 8],
+    /// A bit for each box that is there.
+    there: u32,
+}
+
+/// A ray in the frame of the hierarchy, from its origin on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub origin: [f32; 3],
+    /// Reciprocals of the direction's components, all finite.
+    pub inverse: [f32; 3],
+}
+
+/// A box of the hierarchy, which the crate asks for.
+struct Leaf(Aabb);
+
+impl Boundable for Leaf {
+    fn aabb(&self) -> Aabb {
+        self.0
+    }
+}
+
+impl Hierarchy {
+    /// The hierarchy of some boxes (least and greatest corners), at most 2²⁸, and the number of the box at each place.
+    pub(super) fn new(boxes: impl Iterator<Item = (Vec3A, Vec3A)>) -> (Self, Vec<u32>) {
+        let leaves: Vec<Leaf> = boxes.map(|(min, max)| Leaf(Aabb::new(min, max))).collect();
+        if leaves.is_empty() {
+            return (Self::default(), Vec::new());
+        }
+        assert!(leaves.len() < 1 << 28, "a hierarchy has places of 28 bits");
+        let params = BvhBuildParams::medium_build();
+        #[expect(clippy::cast_possible_truncation, reason = "below 2²⁸")]
+        let order = (0..leaves.len() as u32).collect();
+        let mut binary = PlocBuilder::with_capacity(leaves.len()).build(
+            params.ploc_search_distance,
+            &leaves,
+            order,
+            params.sort_precision,
+            params.search_depth_threshold,
+        );
+        ReinsertionOptimizer::default().run(&mut binary, params.reinsertion_batch_ratio, None);
+        Self::of(&binary)
+    }
+
+    /// Draws the nodes of a binary hierarchy together.
+    fn of(binary: &Bvh2) -> (Self, Vec<u32>) {
+        let (mut nodes, mut numbers) = (vec![Node::EMPTY], Vec::with_capacity(binary.primitive_indices.len()));
+        // Nodes to be filled, and the binary nodes whose descendants are to be their children.
+        let mut open = vec![(0, 0)];
+        while let Some((node, of)) = open.pop() {
+            let children = descendants(binary, of);
+            let mut filled = Node::around(binary, of, &children);
+            for (content, &child) in filled.children.iter_mut().zip(&children) {
+                #[expect(clippy::cast_possible_truncation, reason = "fewer than 2²⁸ boxes and so nodes")]
+                if let Some(held) = few(binary, child) {
+                    *content = IS_LEAF | ((numbers.len() as u32) << 3) | held.len() as u32;
+                    numbers.extend(held);
+                } else {
+                    *content = nodes.len() as u32;
+                    open.push((nodes.len(), child));
+                    nodes.push(Node::EMPTY);
+                }
+            }
+            nodes[node] = filled;
+        }
+        (Self { nodes }, numbers)
+    }
+
+    /// Calls `test` with the places of boxes that the line may meet before `limit`, roughly from near to far; `test` returns a nearer
+    /// limit where it found something.
+    pub(super) fn closest(&self, line: Line, mut limit: f32, mut test: impl FnMut(usize) -> Option<f32>) {
+        let mut open: SmallVec<[(u32, f32); OPEN]> = SmallVec::new();
+        if !self.nodes.is_empty() {
+            open.push((0, 0.0));
+        }
+        while let Some((mut child, near)) = open.pop() {
+            if near > limit {
+                continue;
+            }
+            loop {
+                if child & IS_LEAF != 0 {
+                    for place in leaf(child) {
+                        if let Some(nearer) = test(place) {
+                            limit = nearer;
+                        }
+                    }
+                    break;
+                }
+                let node = &self.nodes[child as usize];
+                let (near, mut hits) = node.cross(&line, limit);
+                if hits == 0 {
+                    break;
+                }
+                let slot = hits.trailing_zeros() as usize;
+                hits &= hits - 1;
+                child = node.children[slot & 7];
+                if hits == 0 {
+                    continue;
+                }
+                // Several: the nearest is next, the others wait in the order of their distances.
+                let near = near.to_array();
+                let mut first = (child, near[slot & 7]);
+                let bottom = open.len();
+                while hits != 0 {
+                    let slot = hits.trailing_zeros() as usize & 7;
+                    hits &= hits - 1;
+                    let mut other = (node.children[slot], near[slot]);
+                    if other.1 < first.1 {
+                        std::mem::swap(&mut other, &mut first);
+                    }
+                    open.push(other);
+                    let mut place = open.len() - 1;
+                    while place > bottom && open[place - 1].1 < open[place].1 {
+                        open.swap(place - 1, place);
+                        place -= 1;
+                    }
+                }
+                child = first.0;
+            }
+        }
+    }
+
+    /// Whether `test` is true for any of the boxes that the line may meet before `limit`.
+    pub(super) fn any(&self, line: Line, limit: f32, mut test: impl FnMut(usize) -> bool) -> bool {
+        let mut open: SmallVec<[u32; OPEN]> = SmallVec::new();
+        if !self.nodes.is_empty() {
+            open.push(0);
+        }
+        while let Some(child) = open.pop() {
+            if child & IS_LEAF != 0 {
+                if leaf(child).any(&mut test) {
+                    return true;
+                }
+                continue;
+            }
+            let node = &self.nodes[child as usize];
+            let (_, mut hits) = node.cross(&line, limit);
+            while hits != 0 {
+                open.push(node.children[hits.trailing_zeros() as usize & 7]);
+                hits &= hits - 1;
+            }
+        }
+        false
+    }
+
+    /// Bytes that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+    }
+}
+
+/// The places of a leaf's boxes.
+fn leaf(child: u32) -> Range<usize> {
+    let first = ((child & !IS_LEAF) >> 3) as usize;
+    first..first + (child & 7) as usize
+}
+
+impl Node {
+    const EMPTY: Self = Self { origin: [0.0; 3], step: [0.0; 3], planes: [u8x16::ZERO; 3], children: [0; 8], there: 0 };
+
+    /// The node of a binary node, with the boxes of some of its descendants and nothing in them.
+    fn around(binary: &Bvh2, of: usize, children: &[usize]) -> Self {
+        let bounds = |node: usize| {
+            let b = binary.nodes[node].aabb();
+            [b.min.to_array(), b.max.to_array()]
+        };
+        let [origin, end] = bounds(of);
+        let mut node = Self { origin, there: (1 << children.len()) - 1, ..Self::EMPTY };
+        for axis in 0..3 {
+            let step = (end[axis] - origin[axis]) / STEPS;
+            node.step[axis] = step;
+            for (slot, &child) in children.iter().enumerate() {
+                let [min, max] = bounds(child).map(|corner| (corner[axis] - origin[axis]) / step);
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast that saturates")]
+                let (min, max) = (min.floor() as u8, max.ceil() as u8);
+                node.planes[axis].as_array_mut()[slot] = min;
+                node.planes[axis].as_array_mut()[slot + 8] = max;
+            }
+        }
+        node
+    }
+
+    /// Where the line enters each box, and a bit for each box that it meets at a parameter in [0, `limit`].
+    #[inline]
+    fn cross(&self, line: &Line, limit: f32) -> (f32x8, u32) {
+        let slab = |axis: usize| {
+            let scale = f32x8::splat(self.step[axis] * line.inverse[axis]);
+            let shift = f32x8::splat((self.origin[axis] - line.origin[axis]) * line.inverse[axis]);
+            let at = |steps: u16x8| f32x8::from_i32x8(i32x8::from_u16x8(steps)) * scale + shift;
+            let planes = self.planes[axis];
+            let (least, greatest) = (at(u16x8::from_u8x16_low(planes)), at(u16x8::from_u8x16_high(planes)));
+            (least.fast_min(greatest), least.fast_max(greatest))
+        };
+        let ((x, x_end), (y, y_end), (z, z_end)) = (slab(0), slab(1), slab(2));
+        let near = x.fast_max(y).fast_max(z.fast_max(f32x8::ZERO));
+        let far = x_end.fast_min(y_end).fast_min(z_end.fast_min(f32x8::splat(limit)));
+        #[expect(clippy::cast_sign_loss, reason = "eight bits")]
+        let hits = near.cmp_le(far).move_mask() as u32;
+        (near, hits & self.there)
+    }
+}
+
+/// Up to eight nodes below a binary node that together hold all that it holds. Opened are those that hold too much for a leaf, then,
+/// while there is room, any; the largest first.
+fn descendants(binary: &Bvh2, of: usize) -> SmallVec<[usize; 8]> {
+    let mut children: SmallVec<[usize; 8]> = SmallVec::new();
+    children.push(of);
+    while children.len() < 8 {
+        let largest = (children.iter().enumerate())
+            .filter(|(_, child)| !binary.nodes[**child].is_leaf())
+            .map(|(place, &child)| (place, child, few(binary, child).is_none(), area(binary, child)))
+            .max_by(|a, b| a.2.cmp(&b.2).then(a.3.total_cmp(&b.3)));
+        let Some((place, child, ..)) = largest else { break };
+        let first = binary.nodes[child].first_index as usize;
+        children[place] = first;
+        children.push(first + 1);
+    }
+    children
+}
+
+/// Half the surface of a node of the binary hierarchy.
+fn area(binary: &Bvh2, node: usize) -> f32 {
+    binary.nodes[node].aabb().half_area()
+}
+
+/// The boxes below a node where they are few enough for a leaf.
+fn few(binary: &Bvh2, node: usize) -> Option<SmallVec<[u32; LEAF]>> {
+    let (mut held, mut open) = (SmallVec::new(), SmallVec::<[usize; 8]>::new());
+    open.push(node);
+    while let Some(next) = open.pop() {
+        let node = &binary.nodes[next];
+        let first = node.first_index as usize;
+        if node.is_leaf() {
+            held.extend_from_slice(&binary.primitive_indices[first..][..node.prim_count as usize]);
+        } else {
+            open.extend([first + 1, first]);
+        }
+        if held.len() + open.len() > LEAF {
+            return None;
+        }
+    }
+    Some(held)
+}
