@@ -18,7 +18,41 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 fn main() {
-    divan::main();
+    match std::env::var_os("PHOTOPIC_RAYS") {
+        Some(folder) => beside_embree(Path::new(&folder)),
+        None => divan::main(),
+    }
+}
+
+/// For `scripts/bench_rays.sh`: writes the rays into a folder, six `f32` each, and prints what is printed there for Embree.
+fn beside_embree(folder: &Path) {
+    let threads = std::env::var("PHOTOPIC_THREADS").ok().and_then(|n| n.parse().ok()).unwrap_or(1);
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    for case in CASES {
+        let Some(surfaces) = surfaces(case) else { continue };
+        for (kind, rays) in [("coherent", camera_rays(case)), ("incoherent", bounced_rays(&surfaces, case))] {
+            let single = |ray: &Ray| [ray.origin, ray.direction].map(|v| v.as_vec3());
+            // The same rays for both: those that single precision can hold.
+            let rays: Vec<Ray> = (rays.iter().map(single))
+                .map(|[origin, direction]| Ray { origin: origin.as_dvec3(), direction: direction.as_dvec3() })
+                .collect();
+            let bytes: Vec<u8> =
+                rays.iter().flat_map(single).flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
+            std::fs::write(folder.join(format!("{}.{kind}", case.name)), bytes).expect("a folder to write to");
+            let closest = |ray: &Ray| surfaces.closest(ray, f64::INFINITY).map_or((0, 0.0), |(_, c)| (1, c.t));
+            let add = |a: (usize, f64), b: (usize, f64)| (a.0 + b.0, a.1 + b.1);
+            let mut best = f64::INFINITY;
+            let mut sum = (0, 0.0);
+            for _ in 0..10 {
+                let start = std::time::Instant::now();
+                let chunk = |rays: &[Ray]| rays.iter().map(closest).fold((0, 0.0), add);
+                sum = pool.install(|| rays.par_chunks(1024).map(chunk).reduce(|| (0, 0.0), add));
+                best = best.min(start.elapsed().as_secs_f64());
+            }
+            let rate = rays.len() as f64 / best / 1e6;
+            println!("{} {kind} photopic: {} hits, distances {:.6}, {rate:.3} Mrays/s", case.name, sum.0, sum.1);
+        }
+    }
 }
 
 /// A mesh of `../shared/render/meshes` and its camera in `../shared/render/scenes`.

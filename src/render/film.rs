@@ -6,12 +6,16 @@ use super::estimate::{Faults, stream};
 use super::integrator::path::PathTracer;
 use super::measure::Settings;
 use super::sampler::Sampler;
+use super::scatter::{self, Scatter, Scattered};
 use super::scene::Scene;
 use super::sensor::camera::Camera;
 use crate::image::description::{Channel, Content, Description, Meaning};
 use crate::image::error::Error;
 use crate::image::source::{self, Region, Source};
 use crate::spectrum::{Per, Quantity, SpectralUnit};
+
+/// One of so many samples is spent on the survey.
+const SURVEY: u64 = 16;
 
 /// The luminance of a picture and how sure it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -45,6 +49,8 @@ pub struct Film<'a, F> {
     description: Description,
     progress: F,
     noise: Noise,
+    /// Samples of each pixel, row by row, where they are not all the same.
+    shares: Option<Vec<u32>>,
 }
 
 impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
@@ -85,13 +91,69 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             description,
             progress,
             noise: Noise::default(),
+            shares: None,
         }
+    }
+
+    /// Finds out with a sixteenth of the samples where the picture is noisy, and shares the samples out among the pixels accordingly (as
+    /// many in all): those of large relative error σ/(L + ε) get more.
+    ///
+    /// The samples that it took are thrown away, so that no pixel's number of samples depends on their values, which would be a bias.
+    /// With fewer than sixteen samples nothing is done.
+    pub fn survey(&mut self) {
+        if self.samples < SURVEY {
+            return;
+        }
+        let (width, height) = (self.description.width, self.description.height);
+        let mut scatter = Scatter::new(width, height);
+        let rows: Vec<Vec<Scattered>> = (0..height)
+            .into_par_iter()
+            .map_init(|| self.tracer(), |tracer, y| self.surveyed(tracer, y, self.samples / SURVEY))
+            .collect();
+        rows.iter().enumerate().for_each(|(y, row)| scatter.add(y, row));
+        self.shares = Some(scatter.samples(self.samples));
     }
 
     /// Luminance and noise of what was rendered so far.
     #[must_use]
     pub fn noise(&self) -> Noise {
         self.noise
+    }
+
+    fn tracer(&self) -> PathTracer<'_> {
+        PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes)
+    }
+
+    /// Luminances of some samples of each pixel of a row, by block.
+    fn surveyed(&self, tracer: &mut PathTracer<'_>, y: usize, samples: u64) -> Vec<Scattered> {
+        let width = self.description.width;
+        let mut row = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
+        for x in 0..width {
+            // Streams of another instrument: the picture's own numbers stay unknown.
+            let pixel = stream(self.instrument + u64::from(u32::MAX), y * width + x);
+            let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
+            for index in 0..samples {
+                sampler.start(index);
+                let sample = self.sample(tracer, x, y, &mut sampler);
+                let luminance = sample.map_or(0.0, |s| s.iter().zip(self.tristimulus).map(|(s, t)| s * t[1]).sum());
+                row[x / scatter::BLOCK].add(luminance);
+            }
+        }
+        row
+    }
+
+    /// One sample of a pixel's radiance per band; `None` where the lens shows nothing.
+    fn sample<'b>(
+        &self,
+        tracer: &'b mut PathTracer<'_>,
+        x: usize,
+        y: usize,
+        sampler: &mut Sampler,
+    ) -> Option<&'b [f64]> {
+        let [u, v, lens @ ..] = sampler.four();
+        #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
+        let ray = self.camera.ray(x as f64 + u, y as f64 + v, lens)?;
+        Some(tracer.radiance(ray, sampler))
     }
 
     /// Renders one pixel: means per band into `bands`; what it adds to the noise.
@@ -102,13 +164,12 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let mut faults = Faults::default();
         // Welford's running mean and sum of squared deviations of the luminance.
         let (mut mean, mut squares, mut count) = (0.0, 0.0, 0.0);
-        for index in 0..self.samples {
+        let own = |shares: &Vec<u32>| u64::from(shares[y * self.description.width + x]);
+        let samples = self.shares.as_ref().map_or(self.samples, own);
+        for index in 0..samples {
             sampler.start(index);
-            let [u, v, lens @ ..] = sampler.four();
             let mut luminance = 0.0;
-            #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
-            if let Some(ray) = self.camera.ray(x as f64 + u, y as f64 + v, lens) {
-                let sample = tracer.radiance(ray, &mut sampler);
+            if let Some(sample) = self.sample(tracer, x, y, &mut sampler) {
                 if !faults.accept(sample, pixel, index) {
                     continue;
                 }
@@ -135,7 +196,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let channels: Vec<usize> = (0..self.description.channels.len()).collect();
         rows.par_iter()
             .map_init(
-                || PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes),
+                || self.tracer(),
                 |tracer, &y| {
                     let region = Region::rows(&self.description, y, 1);
                     let mut samples = vec![0.0; region.width * channels.len()];
@@ -197,10 +258,7 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
         let rows: Vec<Noise> = out
             .par_chunks_mut(region.width * channels.len())
             .enumerate()
-            .map_init(
-                || PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes),
-                |tracer, (row, out)| self.row(tracer, region, region.y + row, channels, out),
-            )
+            .map_init(|| self.tracer(), |tracer, (row, out)| self.row(tracer, region, region.y + row, channels, out))
             .collect();
         rows.iter().for_each(|row| self.noise.append(row));
         Ok(())

@@ -48,6 +48,7 @@ pub mod placed;
 pub mod ray;
 pub mod reading;
 pub mod sampler;
+mod scatter;
 pub mod scene;
 pub mod sensor;
 pub mod shape;

@@ -1,7 +1,8 @@
 //! Well-spread random numbers for paths: a function of a key and a counter, the same on any machine in any order.
 //!
 //! Sobol' points in four dimensions at a time, Owen-scrambled by hashing and shuffled differently for every key and every group of
-//! four ("padding"): a group is stratified in itself, groups are independent of one another.
+//! four ("padding"): a group is stratified in itself, groups are independent of one another. Late groups, which long paths alone ask
+//! for, are plain random numbers: strata gain nothing there.
 //!
 //! Reference: B. Burley, *Practical Hash-based Owen Scrambling*, JCGT 9(4) (2020).
 
@@ -9,6 +10,9 @@ use crate::math::random::philox;
 
 /// Sobol' points are tabulated up to this index; later samples start again with another key.
 const EPOCH: u32 = 1 << 16;
+
+/// Groups that are stratified.
+const STRATIFIED: u32 = 12;
 
 /// The numbers of one sample of one pixel or instrument.
 #[derive(Debug, Clone)]
@@ -33,9 +37,27 @@ impl Sampler {
         self.group = 0;
     }
 
+    /// The next number, uniform in [0, 1), by which alone the samples of a stream are stratified; in place of a group.
+    pub fn one(&mut self) -> f64 {
+        let epoch = self.index / u64::from(EPOCH);
+        let group = mixed(self.key ^ mixed((u64::from(self.group) << 32) | epoch));
+        let within = words(self.index % u64::from(EPOCH))[0];
+        let point = sobol_burley::sample(within, 0, words(group)[0]);
+        self.group += 1;
+        let low = words(mixed(group ^ self.index))[0];
+        f64::from(point) + f64::from(low) * (1.0 / (16_777_216.0 * 4_294_967_296.0))
+    }
+
     /// The next group of four numbers, each uniform in [0, 1), in which the samples of a stream are stratified together.
     pub fn four(&mut self) -> [f64; 4] {
         let epoch = self.index / u64::from(EPOCH);
+        if self.group >= STRATIFIED {
+            let first = mixed(self.key ^ mixed((u64::from(self.group) << 48) ^ self.index));
+            let ([a, b], [c, d]) = (words(first), words(mixed(first)));
+            self.group += 1;
+            // In the middle of their steps, so that the mean is exact.
+            return [a, b, c, d].map(|word| (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0));
+        }
         // What scrambles the group does not depend on the sample.
         let group = mixed(self.key ^ mixed((u64::from(self.group) << 32) | epoch));
         // The index within the epoch is below 2¹⁶ by construction.
@@ -114,6 +136,24 @@ mod tests {
             }
             assert!(seen.iter().flatten().all(|&n| n == 1), "group {group}");
         }
+    }
+
+    /// Late groups are random, single numbers stratified: 2¹⁶ of them have a mean of 1/2 within five standard errors, or far less.
+    #[test]
+    fn late_groups_are_random_and_single_numbers_stratified() {
+        let (mut late, mut single) = ([0.0; 4], 0.0);
+        for index in 0..1 << 16 {
+            let mut sampler = Sampler::new(5, 9, index);
+            single += sampler.one();
+            for _ in 0..STRATIFIED {
+                sampler.four();
+            }
+            late.iter_mut().zip(sampler.four()).for_each(|(sum, u)| *sum += u);
+        }
+        let n = f64::from(1 << 16);
+        assert!(late.iter().all(|sum| (sum / n - 0.5).abs() < 5.0 * (1.0 / 12.0 / n).sqrt()), "{late:?}");
+        // One number in each of n intervals: the mean is within half an interval of 1/2.
+        assert!((single / n - 0.5).abs() < 0.5 / n, "{single}");
     }
 
     #[test]

@@ -24,6 +24,8 @@ pub(super) struct Job<'a> {
     pub name: &'a str,
     pub instrument: u64,
     pub samples: u64,
+    /// The samples go where the picture is noisy.
+    pub adaptive: bool,
     pub folder: &'a Path,
     pub inputs: &'a [String],
     pub talk: Talk,
@@ -61,13 +63,19 @@ impl Job<'_> {
             &self.built.quantities.tristimulus,
             |pixels| progress.inc(pixels * samples),
         );
+        let survey = |film: &mut Film<_>| {
+            if self.adaptive {
+                film.survey();
+            }
+        };
         let noise = match state {
             None => {
+                survey(&mut film);
                 self.write(&place, &mut film)?;
                 film.noise()
             }
             Some((state, picture)) => {
-                state.render(picture, &film)?;
+                state.render(picture, &mut film, survey)?;
                 if self.is_part {
                     return Ok(Noise::default());
                 }

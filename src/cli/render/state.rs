@@ -150,11 +150,12 @@ impl State {
         Ok(())
     }
 
-    /// Renders the rows of a picture that are this state's and not stored yet.
+    /// Renders the rows of a picture that are this state's and not stored yet, after a survey.
     pub(super) fn render<F: Fn(u64) + Send + Sync>(
         &mut self,
         picture: usize,
-        film: &Film<'_, F>,
+        film: &mut Film<'_, F>,
+        survey: impl Fn(&mut Film<'_, F>),
     ) -> Result<(), Failure> {
         let wrong = |e: crate::render::spool::Error| Failure::Message(e.to_string());
         let is_joined = self.is_joined;
@@ -168,6 +169,9 @@ impl State {
                 }
                 missing.push(y);
             }
+        }
+        if !missing.is_empty() {
+            survey(film);
         }
         for rows in missing.chunks(ROWS) {
             for (y, (noise, samples)) in rows.iter().zip(film.rows(rows)) {

@@ -156,6 +156,7 @@ impl Work {
                     name: &instrument.name,
                     instrument: (n as u64) << 32,
                     samples: render.samples,
+                    adaptive: render.adaptive,
                     folder: job.folder,
                     inputs: &self.read,
                     talk: job.talk,

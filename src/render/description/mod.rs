@@ -66,6 +66,8 @@ pub struct Render {
     /// Samples of a pixel.
     #[schemars(range(min = 1))]
     pub samples: u64,
+    /// Whether the samples of a picture go where it is noisy, so many a pixel on average; else every pixel gets as many.
+    pub adaptive: bool,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,
@@ -84,6 +86,7 @@ impl Default for Render {
         Self {
             solver: Solver::Path,
             samples: 64,
+            adaptive: true,
             meter_samples: 1 << 18,
             seed: 0,
             max_edges: None,

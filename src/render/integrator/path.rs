@@ -150,7 +150,7 @@ impl<'a> PathTracer<'a> {
     /// The path carries all bands, and a band is drawn that it will keep where it must be split.
     fn choose_hero(&mut self, sampler: &mut Sampler) {
         self.split = false;
-        let [u, ..] = sampler.four();
+        let u = sampler.one();
         self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
     }
 

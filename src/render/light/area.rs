@@ -9,7 +9,7 @@ use crate::geometry::direction;
 use crate::math::sampling;
 use crate::render::emission::Emission;
 use crate::render::ray::{Ray, Towards};
-use crate::render::shape::Shape;
+use crate::render::shape::{Bounds, Shape};
 
 /// A shape that emits.
 #[derive(Debug, Clone)]
@@ -18,6 +18,10 @@ pub struct AreaLight {
     emission: Arc<Emission>,
     /// Σ over the bands of the radiance along the normal.
     brightness: f64,
+    /// Of the shape.
+    bounds: Bounds,
+    /// Of the shape, m².
+    area: f64,
 }
 
 impl AreaLight {
@@ -25,7 +29,8 @@ impl AreaLight {
     #[must_use]
     pub fn new(shape: Arc<dyn Shape>, emission: Arc<Emission>) -> Self {
         let brightness = emission.radiance().iter().sum();
-        Self { shape, emission, brightness }
+        let (bounds, area) = (shape.bounds(), shape.area());
+        Self { shape, emission, brightness, bounds, area }
     }
 
     /// The shape.
@@ -37,23 +42,28 @@ impl AreaLight {
 
 impl Light for AreaLight {
     fn sample_towards(&self, from: DVec3, u: [f64; 3], arriving: &mut [f64]) -> Option<Towards> {
-        let towards = self.shape.sample_towards(from, u)?;
-        let ray = Ray { origin: from, direction: towards.direction };
-        // The point that was drawn lies within rounding of the crossing found here, which gives the normal it is seen under.
-        let crossing = self.shape.cross(&ray, 0.0, f64::INFINITY)?;
-        // A shape may hide the point that was drawn behind another part of itself.
-        if crossing.t < towards.distance * (1.0 - 1e-6) {
-            return None;
-        }
-        let point = self.shape.surface(&ray, &crossing);
-        let profile = self.emission.profile(-point.normal.dot(towards.direction));
+        let mut towards = self.shape.sample_towards(from, u)?;
+        let normal = if let Some(normal) = self.shape.facing() {
+            normal
+        } else {
+            let ray = Ray { origin: from, direction: towards.direction };
+            // The point that was drawn lies within rounding of the crossing found here, which gives the normal it is seen under.
+            let crossing = self.shape.cross(&ray, 0.0, f64::INFINITY)?;
+            // A shape may hide the point that was drawn behind another part of itself.
+            if crossing.t < towards.distance * (1.0 - 1e-6) {
+                return None;
+            }
+            towards.distance = crossing.t;
+            self.shape.surface(&ray, &crossing).normal
+        };
+        let profile = self.emission.profile(-normal.dot(towards.direction));
         if profile == 0.0 {
             return None;
         }
         for (a, l) in arriving.iter_mut().zip(self.emission.radiance()) {
             *a = l * profile;
         }
-        Some(Towards { distance: crossing.t, ..towards })
+        Some(towards)
     }
 
     fn pdf_towards(&self, from: DVec3, direction: DVec3) -> f64 {
@@ -70,7 +80,7 @@ impl Light for AreaLight {
         let (t, b) = direction::tangents(normal);
         let direction = local.x * t + local.y * b + local.z * normal;
         // Density: 1/A over the area, (p + 2)/(2π) cosᵖ⁺¹θ over a side, so that L cosθ / pdf is the flux itself.
-        let weight = self.shape.area() * self.emission.exitance_per_radiance();
+        let weight = self.area * self.emission.exitance_per_radiance();
         for (f, l) in flux.iter_mut().zip(self.emission.radiance()) {
             *f = l * weight;
         }
@@ -78,19 +88,18 @@ impl Light for AreaLight {
     }
 
     fn flux(&self, flux: &mut [f64]) {
-        let weight = self.shape.area() * self.emission.exitance_per_radiance();
+        let weight = self.area * self.emission.exitance_per_radiance();
         for (f, l) in flux.iter_mut().zip(self.emission.radiance()) {
             *f = l * weight;
         }
     }
 
     fn importance(&self, from: DVec3) -> f64 {
-        let bounds = self.shape.bounds();
-        let nearest = from.clamp(bounds.min, bounds.max);
-        let reach = (bounds.max - bounds.min).length_squared() / 4.0;
+        let nearest = from.clamp(self.bounds.min, self.bounds.max);
+        let reach = (self.bounds.max - self.bounds.min).length_squared() / 4.0;
         // Solid angle of a shape of area A, bounded by the hemisphere that it can fill.
         let squared = from.distance_squared(nearest).max(reach).max(f64::MIN_POSITIVE);
-        self.brightness * (self.shape.area() / squared).min(std::f64::consts::TAU)
+        self.brightness * (self.area / squared).min(std::f64::consts::TAU)
     }
 }
 

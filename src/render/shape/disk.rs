@@ -93,6 +93,10 @@ impl Shape for Disk {
         PI * (self.radius - self.inner) * (self.radius + self.inner)
     }
 
+    fn facing(&self) -> Option<DVec3> {
+        Some(self.facet.normal)
+    }
+
     fn sample_area(&self, [_, u, v]: [f64; 3]) -> SurfacePoint {
         let p = if self.inner == 0.0 {
             self.radius * sampling::disk([u, v])

@@ -90,6 +90,11 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
     /// Area, m²; infinite for an unbounded plane.
     fn area(&self) -> f64;
 
+    /// The unit normal of a flat shape, which is the same everywhere.
+    fn facing(&self) -> Option<DVec3> {
+        None
+    }
+
     /// A point, uniform over the area, from three uniform numbers (`u[0]` chooses the face).
     fn sample_area(&self, u: [f64; 3]) -> SurfacePoint;
 

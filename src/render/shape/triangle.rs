@@ -71,6 +71,10 @@ impl Shape for Triangle {
         self.area
     }
 
+    fn facing(&self) -> Option<DVec3> {
+        Some(self.facet.normal)
+    }
+
     fn sample_area(&self, [_, u, v]: [f64; 3]) -> SurfacePoint {
         self.point(uniform_weights([u, v]))
     }

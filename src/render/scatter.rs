@@ -1,0 +1,134 @@
+//! How the samples of a picture are shared out among its pixels.
+//!
+//! ```text
+//! n ∝ σ/(L + L̄/100)        σ, L: of the block of pixels and its neighbours
+//! ```
+//!
+//! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given Σ n (Lagrange); the hundredth of the picture's
+//! mean luminance keeps dark pixels from taking all.
+
+/// Pixels in the rows and columns of a block.
+pub(super) const BLOCK: usize = 4;
+/// No pixel gets less than this share of the mean, as what is rare may not have been seen.
+const LEAST: f64 = 0.125;
+
+/// Luminances of a block.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Scattered {
+    count: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Scattered {
+    /// A luminance; one that is not finite is none.
+    pub(super) fn add(&mut self, luminance: f64) {
+        if luminance.is_finite() {
+            self.append(1.0, Self { count: 1.0, sum: luminance, squares: luminance * luminance });
+        }
+    }
+
+    fn append(&mut self, weight: f64, other: Self) {
+        self.count += weight * other.count;
+        self.sum += weight * other.sum;
+        self.squares += weight * other.squares;
+    }
+}
+
+/// Luminances by block.
+#[derive(Debug)]
+pub(super) struct Scatter {
+    width: usize,
+    height: usize,
+    blocks: Vec<Scattered>,
+}
+
+impl Scatter {
+    /// Of a picture of so many columns and rows.
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        let blocks = vec![Scattered::default(); width.div_ceil(BLOCK) * height.div_ceil(BLOCK)];
+        Self { width, height, blocks }
+    }
+
+    /// Luminances of a row of pixels, by block.
+    pub(super) fn add(&mut self, y: usize, row: &[Scattered]) {
+        let blocks = &mut self.blocks[y / BLOCK * self.width.div_ceil(BLOCK)..];
+        blocks.iter_mut().zip(row).for_each(|(block, more)| block.append(1.0, *more));
+    }
+
+    /// Samples of each pixel, row by row, of which there are `mean` on average (but for rounding to whole ones).
+    pub(super) fn samples(&self, mean: u64) -> Vec<u32> {
+        let columns = self.width.div_ceil(BLOCK);
+        let rows = self.height.div_ceil(BLOCK);
+        let mut all = Scattered::default();
+        self.blocks.iter().for_each(|block| all.append(1.0, *block));
+        let dark = 0.01 * all.sum / all.count.max(1.0);
+        let deserved = |bx: usize, by: usize| -> f64 {
+            let mut near = Scattered::default();
+            for y in by.saturating_sub(1)..(by + 2).min(rows) {
+                for x in bx.saturating_sub(1)..(bx + 2).min(columns) {
+                    // The block itself counts as much as half of those around it.
+                    near.append(if (x, y) == (bx, by) { 4.0 } else { 1.0 }, self.blocks[y * columns + x]);
+                }
+            }
+            let average = near.sum / near.count;
+            let deviation = (near.squares / near.count - average * average).max(0.0).sqrt();
+            if average + dark > 0.0 { deviation / (average + dark) } else { 0.0 }
+        };
+        let blocks: Vec<f64> = (0..rows * columns).map(|b| deserved(b % columns, b / columns)).collect();
+        let average = blocks.iter().sum::<f64>() / blocks.len() as f64;
+        let share = |b: f64| if average > 0.0 { LEAST + (1.0 - LEAST) * b / average } else { 1.0 };
+        let of = |x: usize, y: usize| share(blocks[y / BLOCK * columns + x / BLOCK]);
+        (0..self.width * self.height)
+            .map(|i| {
+                let samples =
+                    (mean as f64 * of(i % self.width, i / self.width)).round().clamp(1.0, f64::from(u32::MAX));
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+                let samples = samples as u32;
+                samples
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blocks of luminance 1 ± σ: samples in proportion to σ, an eighth of the mean for those without noise, and as many in all.
+    #[test]
+    fn samples_go_where_the_noise_is() {
+        let (width, height) = (62, 40);
+        let mut scatter = Scatter::new(width, height);
+        let sigma = |x: usize| if x < 32 { 0.0 } else { 0.5 };
+        for y in 0..height {
+            let mut row = vec![Scattered::default(); width.div_ceil(BLOCK)];
+            for x in 0..width {
+                row[x / BLOCK].add(1.0 - sigma(x));
+                row[x / BLOCK].add(1.0 + sigma(x));
+                row[x / BLOCK].add(f64::NAN);
+            }
+            scatter.add(y, &row);
+        }
+        let samples = scatter.samples(800);
+        assert_eq!(samples.len(), width * height);
+        assert_eq!(samples[5 * width + 3], 100);
+        let (first, other) = (samples[5 * width + 45], samples[35 * width + 55]);
+        assert_eq!(first, other);
+        assert!(first > 1400, "{first}");
+        let mean = samples.iter().map(|&n| f64::from(n)).sum::<f64>() / samples.len() as f64;
+        // The last blocks are half as wide as the others, of which the mean is taken.
+        assert!((mean / 800.0 - 1.0).abs() < 0.05, "{mean}");
+    }
+
+    #[test]
+    fn a_picture_without_light_or_noise_is_sampled_evenly() {
+        for luminance in [0.0, 3.0] {
+            let mut scatter = Scatter::new(9, 5);
+            let mut row = vec![Scattered::default(); 3];
+            row.iter_mut().for_each(|block| block.add(luminance));
+            (0..5).for_each(|y| scatter.add(y, &row));
+            assert!(scatter.samples(7).iter().all(|&n| n == 7));
+        }
+    }
+}
