@@ -4,9 +4,11 @@
 mod common;
 
 mod analytic;
+mod audits;
 mod cli;
 mod files;
 mod honest;
+mod keys;
 mod lights;
 mod meshes;
 mod packets;
