@@ -12,5 +12,6 @@ mod keys;
 mod lights;
 mod meshes;
 mod packets;
+mod scenes;
 mod shapes;
 mod slab;
