@@ -1,11 +1,11 @@
 #![no_main]
 
-use photopic::render::format::{obj, ply};
+use photopic::render::format::{gltf, obj, ply};
 use photopic::render::mesh::Mesh;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let ply = ply::read(bytes).map(|object| vec![object]);
-    for read in [ply, obj::read(bytes)] {
+    for read in [ply, obj::read(bytes), gltf::read(bytes, |_| Err("nothing is beside it".to_owned()))] {
         match read {
             Ok(objects) => {
                 for object in objects {

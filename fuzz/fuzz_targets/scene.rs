@@ -1,9 +1,9 @@
 #![no_main]
 
 use photopic::luminaire::Luminaire;
-use photopic::render::build::{Files, build};
+use photopic::render::build::{Files, PictureFile, build};
 use photopic::render::description::Description;
-use photopic::render::mesh::MeshData;
+use photopic::render::format::Object;
 use photopic::spectrum::Spectrum;
 
 /// No file is there.
@@ -18,8 +18,12 @@ impl Files for Nothing {
         Err(format!("{file}: no such file; expected a lamp file"))
     }
 
-    fn meshes(&self, file: &str) -> Result<Vec<MeshData>, String> {
+    fn meshes(&self, file: &str) -> Result<Vec<Object>, String> {
         Err(format!("{file}: no such file; expected a mesh"))
+    }
+
+    fn picture(&self, file: &str) -> Result<PictureFile, String> {
+        Err(format!("{file}: no such file; expected a picture"))
     }
 }
 

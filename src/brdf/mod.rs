@@ -84,6 +84,11 @@ pub trait Brdf: fmt::Debug + Send + Sync {
     /// Whether turning the sample about its normal changes nothing.
     fn is_isotropic(&self) -> bool;
 
+    /// The microfacets in it that know a single scattering only, each with its weight per band: light that meets a second facet is lost.
+    fn microfacets(&self) -> Vec<(Vec<f64>, &microfacet::Microfacet)> {
+        Vec::new()
+    }
+
     /// Whether some of the light leaves in Dirac lobes: [`Brdf::specular`].
     fn has_delta(&self) -> bool {
         false

@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use super::microfacet::Microfacet;
 use super::parameter::{Error, same_bands};
 use super::{Brdf, Sampled, mean};
 use crate::math::sampling::split;
@@ -97,6 +98,12 @@ impl Brdf for Sum {
 
     fn is_tabulated(&self) -> bool {
         self.parts.iter().any(|p| p.brdf.is_tabulated())
+    }
+
+    fn microfacets(&self) -> Vec<(Vec<f64>, &Microfacet)> {
+        let of = |part: &'_ Part, weights: Vec<f64>| weights.iter().zip(&part.weights).map(|(a, b)| a * b).collect();
+        let parts = self.parts.iter().flat_map(|p| p.brdf.microfacets().into_iter().map(move |(w, m)| (of(p, w), m)));
+        parts.collect()
     }
 
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, values: &mut [f64]) {

@@ -121,7 +121,7 @@ impl Replicate {
         &self.faults
     }
 
-    fn mean(&self, weights: &[f64]) -> f64 {
+    pub(super) fn mean(&self, weights: &[f64]) -> f64 {
         let good = self.samples - self.faults.count();
         #[expect(clippy::cast_precision_loss, reason = "a number of samples")]
         let count = good.max(1) as f64;

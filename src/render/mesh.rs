@@ -70,6 +70,7 @@ pub struct Mesh {
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     skipped: usize,
+    first_skipped: Option<usize>,
     bounds: Bounds,
     blocks: Vec<Block>,
     /// Over the blocks.
@@ -112,11 +113,13 @@ impl Mesh {
             }
         }
         let positions = &data.positions;
-        data.triangles.retain(|names| {
+        let spans_area = |names: &[u32; 3]| {
             let [a, b, c] = names.map(|i| positions[i as usize]);
             let across = cross(b - a, c - a);
             across.is_finite() && across != DVec3::ZERO
-        });
+        };
+        let first_skipped = data.triangles.iter().position(|names| !spans_area(names));
+        data.triangles.retain(spans_area);
         let skipped = given - data.triangles.len();
         let of = |names: &[u32; 3]| Bounds::of(names.map(|corner| positions[corner as usize]));
         let mut blocks = Vec::new();
@@ -145,7 +148,7 @@ impl Mesh {
         let names = if data.normals.is_empty() && data.uvs.is_empty() { Vec::new() } else { data.triangles };
         let bounds = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
         let (normals, uvs, tree) = (data.normals, data.uvs, Tree::new(&boxes));
-        Ok(Self { corners, names, normals, uvs, skipped, bounds, blocks, tree })
+        Ok(Self { corners, names, normals, uvs, skipped, first_skipped, bounds, blocks, tree })
     }
 
     /// The number of its triangles.
@@ -158,6 +161,12 @@ impl Mesh {
     #[must_use]
     pub fn skipped(&self) -> usize {
         self.skipped
+    }
+
+    /// The first triangle that was left out, from 0 in the order given.
+    #[must_use]
+    pub fn first_skipped(&self) -> Option<usize> {
+        self.first_skipped
     }
 
     /// The box that holds it, m; empty for a mesh without triangles.

@@ -27,8 +27,10 @@
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
 //! | [`estimate`], [`measure`] | readings with their standard errors |
+//! | [`audit`] | where the energy goes, and what readings lose |
 
 pub mod accelerate;
+pub mod audit;
 pub mod bands;
 pub mod build;
 mod corners;

@@ -12,4 +12,5 @@ pub mod envelope;
 pub mod image;
 pub mod lamp;
 pub mod render;
+pub mod render_audit;
 pub mod text;

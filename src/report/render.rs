@@ -25,14 +25,47 @@ pub fn model(built: &Built) -> Value {
     if built.settings.limits.max_edges.is_some() {
         left_out.push("paths longer than max_edges");
     }
+    if !built.analysis.dark_lights.is_empty() {
+        left_out.push("lights of no flux");
+    }
+    if built.analysis.polished_surfaces > 0 && !built.analysis.polarisation {
+        left_out.push("polarisation");
+    }
+    let analysis = &built.analysis;
+    let paths = match (analysis.fluorescent.is_empty(), analysis.dispersive.is_empty()) {
+        (true, true) => "every path carries all of them",
+        (true, false) => {
+            "every path carries all of them, and one from where it is refracted by a material that disperses"
+        }
+        (false, true) => "every path carries all of them, and exchanges them at materials that fluoresce",
+        (false, false) => {
+            "every path carries all of them, one from where it is refracted by a material that disperses, and exchanges them at materials that fluoresce"
+        }
+    };
     json!({
+        "extent": if analysis.full { "full" } else { "minimal" },
         "solver": solver,
         "light": light,
+        "reflected_light": if analysis.global { "global" } else { "none: nothing scatters" },
+        "polarisation": {
+            "followed": analysis.polarisation,
+            "because": analysis.polarisation_because,
+            "polished_surfaces": analysis.polished_surfaces,
+        },
+        "materials": {
+            "dispersive": analysis.dispersive,
+            "fluorescent": analysis.fluorescent,
+            "anisotropic": analysis.anisotropic,
+        },
+        "lights": {
+            "in_closed_form": analysis.closed_form_lights,
+            "without_flux": analysis.dark_lights,
+        },
         "wavelengths": {
             "count": bands.len(),
             "nm": bands.wavelengths_nm(),
             "relative_error": built.wavelength_error,
-            "paths": "every path carries all of them",
+            "paths": paths,
         },
         "max_edges": built.settings.limits.max_edges,
         "left_out": left_out,
@@ -223,6 +256,16 @@ pub fn contents_text(built: &Built) -> String {
     let error = built
         .wavelength_error
         .map_or_else(String::new, |e| format!(", error of their sum up to {}", significant(e, 2)));
-    let _ = writeln!(out, "{} wavelengths, all on every path{error}", bands.len());
+    let analysis = &built.analysis;
+    let paths = contents["model"]["wavelengths"]["paths"].as_str().unwrap_or_default();
+    let _ = writeln!(out, "{} wavelengths{error}: {paths}", bands.len());
+    let followed = if analysis.polarisation { "followed" } else { "left out" };
+    let _ = writeln!(out, "polarisation is {followed}: {}", analysis.polarisation_because);
+    if !analysis.global {
+        let _ = writeln!(out, "nothing scatters: there is only the light of the lamps");
+    }
+    for light in &analysis.dark_lights {
+        let _ = writeln!(out, "light   {light}: left out, it has no flux");
+    }
     out
 }

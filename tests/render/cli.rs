@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use predicates::str::contains;
 use serde_json::Value;
 
-fn photopic() -> Command {
+pub(crate) fn photopic() -> Command {
     Command::cargo_bin("photopic").expect("the binary")
 }
 
@@ -26,13 +26,13 @@ spectrum = true
 illuminance = { at = [0, 0, 0] }
 "#;
 
-fn scene(folder: &tempfile::TempDir, text: &str) -> PathBuf {
+pub(crate) fn scene(folder: &tempfile::TempDir, text: &str) -> PathBuf {
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, text).expect("a scene is written");
     path
 }
 
-fn json(command: &mut Command) -> Value {
+pub(crate) fn json(command: &mut Command) -> Value {
     let output = command.output().expect("it runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
@@ -308,7 +308,7 @@ illuminance = { at = [1.8, 1.8, 1.8] }
     assert_eq!(out["inputs"].as_array().map(Vec::len), Some(2));
     for (from, to, message) in [
         ("tetra.obj", "none.obj", "cannot be read"),
-        ("tetra.obj", "scene.toml", "ends in .ply or .obj"),
+        ("tetra.obj", "scene.toml", "ends in .ply, .obj"),
         ("scale = 2.0", "scale = 0.0", "cannot be undone"),
         ("{ scale = 2.0 }", "{ scale = 2.0, translate = [0, 0, 1] }", "not one of translate, rotate, scale"),
     ] {

@@ -4,11 +4,14 @@
 mod common;
 
 mod analytic;
+mod audits;
 mod cli;
 mod files;
 mod honest;
+mod keys;
 mod lights;
 mod meshes;
 mod packets;
+mod scenes;
 mod shapes;
 mod slab;

@@ -237,6 +237,10 @@ impl Brdf for Microfacet {
         }
     }
 
+    fn microfacets(&self) -> Vec<(Vec<f64>, &Microfacet)> {
+        vec![(vec![1.0; self.bands()], self)]
+    }
+
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, values: &mut [f64]) {
         if incident.z <= 0.0 || outgoing.z <= 0.0 {
             return values.fill(0.0);

@@ -13,6 +13,8 @@ mod seen;
 use clap::Subcommand;
 
 use super::{Failure, Talk};
+use crate::image::{Description, Region};
+use crate::report::envelope::Input;
 
 /// Verbs of `image`.
 #[derive(Debug, Subcommand)]
@@ -27,6 +29,26 @@ pub(super) enum ImageCommand {
     Probe(Box<probe::ProbeArgs>),
     /// A false-colour picture of the luminance with its legend, or a quick look in the terminal.
     Falsecolor(Box<falsecolor::FalsecolorArgs>),
+}
+
+/// A whole picture of a file as it says itself what it is, for those who need all of it at once.
+pub(super) fn whole(path: &str) -> Result<(Description, Vec<f32>, Vec<Input>), Failure> {
+    let reading = open::Reading {
+        wavelengths: None,
+        wavelength_unit: None,
+        reflectance: false,
+        linear: false,
+        gain: 1.0,
+        dark: 0.0,
+    };
+    let mut opened = open::open(&[path.to_owned()], &reading)?;
+    let inputs = opened.inputs()?;
+    let description = opened.source.description().clone();
+    let channels: Vec<usize> = (0..description.channels.len()).collect();
+    let mut samples = vec![0.0; description.pixels() * channels.len()];
+    let all = Region::rows(&description, 0, description.height);
+    opened.source.read(all, &channels, &mut samples).map_err(|e| Failure::Message(e.to_string()))?;
+    Ok((description, samples, inputs))
 }
 
 pub(super) fn run(command: ImageCommand, talk: Talk) -> Result<(), Failure> {

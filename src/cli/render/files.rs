@@ -3,27 +3,27 @@
 use std::cell::RefCell;
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
 use crate::cli::Failure;
 use crate::cli::convert::single;
+use crate::cli::image;
 use crate::constants::SecondRadiation;
 use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::format::{self, ReadOptions};
-use crate::render::build::{Built, Files};
-use crate::render::format as mesh;
-use crate::render::mesh::MeshData;
+use crate::render::build::{Built, Files, PictureFile};
+use crate::render::format::{self as mesh, Object};
 use crate::render::reading::Reading;
 use crate::report::envelope::Input;
 use crate::spectrum::Spectrum;
 
-/// A scene's text and the folder in which its files are.
+/// A scene's text and the path that its files are beside.
 pub(super) struct Scene {
     pub text: String,
-    folder: PathBuf,
+    path: String,
     inputs: RefCell<Vec<Input>>,
 }
 
@@ -46,8 +46,7 @@ impl Scene {
             let at = e.utf8_error().valid_up_to();
             Failure::Message(format!("{path}: byte {at} is not UTF-8; expected a scene (TOML)"))
         })?;
-        let folder = Path::new(path).parent().map(Path::to_owned).unwrap_or_default();
-        Ok(Self { text, folder, inputs: RefCell::new(vec![input]) })
+        Ok(Self { text, path: path.to_owned(), inputs: RefCell::new(vec![input]) })
     }
 
     /// The scene and all files read for it.
@@ -56,7 +55,7 @@ impl Scene {
     }
 
     fn path(&self, file: &str) -> String {
-        self.folder.join(file).display().to_string()
+        beside(&self.path, file)
     }
 
     fn note(&self, input: Input) {
@@ -87,22 +86,52 @@ impl Files for Scene {
         Ok(file.value.luminaire)
     }
 
-    fn meshes(&self, file: &str) -> Result<Vec<MeshData>, String> {
+    fn meshes(&self, file: &str) -> Result<Vec<Object>, String> {
         let path = self.path(file);
         let bytes = fs::read(&path).map_err(|e| format!("{path}: cannot be read: {e}; expected a mesh"))?;
         let wrong = |e: mesh::Error| format!("{path}:{e}");
         let objects = match Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
             Some("obj") => mesh::obj::read(&bytes).map_err(wrong)?,
             Some("ply") => vec![mesh::ply::read(&bytes).map_err(wrong)?],
-            _ => return Err(format!("{path}: expected a mesh whose name ends in .ply or .obj")),
+            Some("gltf" | "glb") => {
+                let beside = |name: &str| {
+                    let own = beside(&path, name);
+                    let bytes = fs::read(&own).map_err(|e| format!("{own}: cannot be read: {e}"))?;
+                    self.note(Input { path: own, sha256: checksum(&bytes) });
+                    Ok(bytes)
+                };
+                mesh::gltf::read(&bytes, beside).map_err(wrong)?
+            }
+            _ => return Err(format!("{path}: expected a mesh whose name ends in .ply, .obj, .gltf or .glb")),
         };
         self.note(Input { path, sha256: checksum(&bytes) });
-        Ok(objects.into_iter().map(|o| o.mesh).collect())
+        Ok(objects)
+    }
+
+    fn picture(&self, file: &str) -> Result<PictureFile, String> {
+        let (description, samples, inputs) = image::whole(&self.path(file)).map_err(|e| e.to_string())?;
+        inputs.into_iter().for_each(|input| self.note(input));
+        Ok(PictureFile { description, samples })
     }
 }
 
-/// What is to be said of a scene's readings beside their figures.
+/// A file that a scene names, as a path.
+fn beside(scene: &str, file: &str) -> String {
+    Path::new(scene).parent().unwrap_or(Path::new("")).join(file).display().to_string()
+}
+
+/// What is to be said of a scene and of its readings beside their figures.
 pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<Finding> {
+    let incomplete = built.incomplete.iter().map(|i| {
+        let name = i.mesh.as_ref().map_or_else(String::new, |n| format!(" of `{n}`"));
+        let message = format!(
+            "{} of {} triangles{name} were left out: they span no area, or a corner is not finite; the first is triangle {}",
+            i.triangles, i.of, i.first
+        );
+        Finding::warning("R003", message)
+            .at(Location::default().in_file(&beside(path, &i.file)))
+            .hint("faces count as the file gives them, those of more than three corners as several triangles")
+    });
     let dark = built.scene.lights().is_empty().then(|| {
         let finding = Finding::warning("R002", "nothing shines in the scene: every reading is 0");
         finding.at(Location::default().in_file(path)).hint("a [[light]], or a shape with an emission")
@@ -119,5 +148,5 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
-    dark.into_iter().chain(faults).collect()
+    incomplete.chain(dark).chain(faults).collect()
 }

@@ -1,5 +1,6 @@
 //! `render`: a scene in, readings and pictures out.
 
+mod audits;
 mod files;
 mod pictures;
 mod state;
@@ -13,7 +14,7 @@ use clap::Args;
 use super::output::{self, Sink};
 use super::{Failure, Talk};
 use crate::render::build::{Built, Kind};
-use crate::render::description;
+use crate::render::description::{self, Model};
 use crate::render::reading;
 use crate::render::spool::Share;
 use crate::report::render as report;
@@ -48,6 +49,10 @@ pub(super) struct RenderArgs {
     /// Samples of a meter, at most where there is a target, instead of the scene's.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..))]
     meter_samples: Option<u64>,
+    /// What is modelled, instead of the scene's: only what the scene requires (minimal), or everything (full): wavelengths 1 nm apart,
+    /// polarisation, lights of no flux. Both agree within their error bars.
+    #[arg(long, value_name = "EXTENT", value_parser = model, conflicts_with = "shard")]
+    model: Option<Model>,
     /// Names all random numbers, instead of the scene's.
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
@@ -67,6 +72,10 @@ pub(super) struct RenderArgs {
     /// Folder for the pictures that the scene names; the current one without it.
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
+    /// Packets of flux that are sent through the scene to see where the energy goes; more make the audit's error bars narrower, 0
+    /// leaves it out.
+    #[arg(long, value_name = "COUNT", default_value_t = PACKETS)]
+    packets: u64,
     /// One JSON document.
     #[arg(long)]
     json: bool,
@@ -74,6 +83,9 @@ pub(super) struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
+
+/// Packets of the energy audit, where no number is given.
+const PACKETS: u64 = 1 << 14;
 
 /// A relative standard error and the meters that it is for.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +100,14 @@ fn target(text: &str) -> Result<TargetArg, String> {
     let percent: f64 = number.trim().parse().ok().filter(|p| *p > 0.0 && *p < 1e6).ok_or_else(expected)?;
     let which = which.trim();
     Ok(TargetArg { relative: percent / 100.0, which: (!which.is_empty()).then(|| which.to_owned()) })
+}
+
+fn model(text: &str) -> Result<Model, String> {
+    match text {
+        "minimal" => Ok(Model::Minimal),
+        "full" => Ok(Model::Full),
+        _ => Err(format!("`{text}`; expected minimal or full")),
+    }
 }
 
 fn share(text: &str) -> Result<Share, String> {
@@ -127,11 +147,12 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         writeln!(sink, "{:#}", description::schema())?;
         return sink.finish(true);
     };
-    let overrides = Overrides { samples: a.samples, meter_samples: a.meter_samples, seed: a.seed };
+    let overrides = Overrides { samples: a.samples, meter_samples: a.meter_samples, seed: a.seed, model: a.model };
     let work = Work::new(path, &overrides)?;
     if a.check {
         let result = (report::contents(&work.built), report::contents_text(&work.built));
-        return work.print("render", result, a.json, a.output.as_deref(), Vec::new());
+        let findings = work.findings(&[], None, talk);
+        return work.print("render", result, a.json, a.output.as_deref(), findings);
     }
     let place = a.checkpoint.as_deref().or(a.resume.as_deref()).or(a.output.as_deref().filter(|_| a.shard.is_some()));
     let share = a.shard.unwrap_or(Share::WHOLE);
@@ -153,7 +174,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
     let job = Job { share, folder: a.folder.as_deref().unwrap_or(Path::new("")), targets: &targets, talk };
     match work.render(&job, state.as_mut())? {
         None => Ok(()),
-        Some(done) => work.report("render", done, a.json, a.output.as_deref(), talk),
+        Some(done) => work.report("render", done, a.json, a.output.as_deref(), talk, a.packets),
     }
 }
 
@@ -161,8 +182,12 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
     let mut state = State::join(&a.shards)?;
     let header = state.header().clone();
     let task = &header.task;
-    let overrides =
-        Overrides { samples: Some(task.samples), meter_samples: Some(task.meter_samples), seed: Some(task.seed) };
+    let overrides = Overrides {
+        samples: Some(task.samples),
+        meter_samples: Some(task.meter_samples),
+        seed: Some(task.seed),
+        model: None,
+    };
     let work = Work::new(&task.scene, &overrides)?;
     if work.fingerprint != header.fingerprint {
         let message = format!("{}: the scene or its files have changed since the shards were rendered", task.scene);
@@ -173,7 +198,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
     let job = Job { share: Share::WHOLE, folder, targets: &targets, talk };
     match work.render(&job, Some(&mut state))? {
         None => Ok(()),
-        Some(done) => work.report("merge", done, a.json, a.output.as_deref(), talk),
+        Some(done) => work.report("merge", done, a.json, a.output.as_deref(), talk, PACKETS),
     }
 }
 

@@ -9,19 +9,21 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::state::{self, State};
-use super::{files, pictures};
+use super::{audits, files, pictures};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
+use crate::render::audit::{Audit, bias, energy};
 use crate::render::build::{Built, Kind, build};
-use crate::render::description::{self, Description};
+use crate::render::description::{self, Description, Model};
 use crate::render::estimate::REPLICATES;
 use crate::render::measure::{Board, Meter, Target};
 use crate::render::reading::{self, Reading};
 use crate::render::spool::{Header, Share, Task};
 use crate::report::envelope::{Envelope, Input};
 use crate::report::render as report;
+use crate::report::render_audit;
 
 /// Rounds in which meters without a target are sampled: so often the bar moves.
 const ROUNDS: u64 = 64;
@@ -31,6 +33,7 @@ pub(super) struct Overrides {
     pub samples: Option<u64>,
     pub meter_samples: Option<u64>,
     pub seed: Option<u64>,
+    pub model: Option<Model>,
 }
 
 /// A scene that is ready, with all that was read for it.
@@ -75,6 +78,7 @@ impl Work {
         render.samples = overrides.samples.unwrap_or(render.samples);
         render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);
         render.seed = overrides.seed.unwrap_or(render.seed);
+        render.model = overrides.model.unwrap_or(render.model);
         let built = build(&scene.text, &description, &scene).map_err(wrong)?;
         let inputs = scene.inputs();
         let read = inputs.iter().map(|i| i.path.clone()).collect();
@@ -82,7 +86,8 @@ impl Work {
         sum.update(env!("CARGO_PKG_VERSION"));
         inputs.iter().filter_map(|i| i.sha256.as_ref()).for_each(|s| sum.update(s));
         let render = &description.render;
-        [render.samples, render.meter_samples, render.seed].into_iter().for_each(|n| sum.update(n.to_le_bytes()));
+        let full = u64::from(render.model == Model::Full);
+        [render.samples, render.meter_samples, render.seed, full].into_iter().for_each(|n| sum.update(n.to_le_bytes()));
         let fingerprint = sum.finalize().iter().map(|b| format!("{b:02x}")).collect();
         let (mut meters, mut first): (Vec<(u64, Meter)>, Vec<usize>) = (Vec::new(), Vec::new());
         for (number, instrument) in (0_u64..).zip(&built.instruments) {
@@ -181,6 +186,32 @@ impl Work {
         Ok((job.share == Share::WHOLE).then_some(done))
     }
 
+    /// Where the energy goes, by so many packets of flux, and what the solver leaves out of every reading.
+    fn audit(&self, packets: u64) -> Audit {
+        /// Samples of a reading, with and without what the solver leaves out.
+        const SAMPLES: u64 = 1 << 13;
+        let Built { scene, settings, quantities, .. } = &self.built;
+        let (materials, of) = (self.built.material_names.len(), &self.built.material_of_surface);
+        let energy = energy::audit(scene, settings, &quantities.radiant, of, materials, packets);
+        let weights = &quantities.luminous;
+        let lost = (self.built.instruments.iter().enumerate()).map(|(n, instrument)| match &instrument.kind {
+            Kind::Camera(camera) => bias::of_picture(scene, settings, camera, (n as u64) << 32, weights, SAMPLES),
+            _ => {
+                let meters = &self.meters[self.first[n]..self.first[n + 1]];
+                bias::of_meters(scene, settings, meters, weights, SAMPLES.div_ceil(meters.len() as u64))
+            }
+        });
+        Audit { energy, lost: lost.collect() }
+    }
+
+    /// What is to be said of the scene and of its readings; said on standard error at once.
+    pub(super) fn findings(&self, readings: &[Reading], audit: Option<&Audit>, talk: Talk) -> Vec<Finding> {
+        let mut findings = files::findings(&self.path, &self.built, readings);
+        findings.extend(audit.into_iter().flat_map(|audit| audits::findings(&self.path, &self.built, audit)));
+        Notes::new(&[], talk).print(&findings);
+        findings
+    }
+
     /// Tells what came out.
     pub(super) fn report(
         &self,
@@ -189,12 +220,16 @@ impl Work {
         as_json: bool,
         output: Option<&Path>,
         talk: Talk,
+        packets: u64,
     ) -> Result<(), Failure> {
-        let findings = files::findings(&self.path, &self.built, &done.readings);
-        Notes::new(&[], talk).print(&findings);
+        let audit = self.audit(packets);
+        let findings = self.findings(&done.readings, Some(&audit), talk);
         let seconds = self.begun.elapsed().as_secs_f64();
-        let result = report::result(&self.built, &done.readings, &done.written, seconds);
+        let mut result = report::result(&self.built, &done.readings, &done.written, seconds);
+        result["energy"] = render_audit::energy(&self.built, &audit);
+        result["bias"] = render_audit::bias(&self.built, &audit);
         let mut text = report::text(&self.built, &done.readings);
+        text.push_str(&render_audit::text(&self.built, &audit));
         done.written.iter().for_each(|w| text.push_str(&format!("written: {w}\n")));
         self.print(command, (result, text), as_json, output, findings)?;
         let reached = done.readings.iter().all(|r| r.target.is_none_or(|t| t.1));

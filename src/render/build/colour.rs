@@ -110,6 +110,11 @@ impl Colours {
         let mut emissions = Vec::new();
         for light in &d.light {
             let at = super::light::span(light);
+            let environment = light.environment.as_ref().map(toml::Spanned::get_ref);
+            if let Some(file) = environment.and_then(|e| e.file.as_ref()) {
+                emissions.extend(super::picture::emissions(b, file, light.spectrum.as_ref(), &at)?);
+                continue;
+            }
             emissions.push(
                 light.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?,
             );
@@ -119,7 +124,13 @@ impl Colours {
             let at = emission.span();
             emissions.push(source.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?);
         }
-        let reflectances = super::material::colours(b)?;
+        let mut reflectances = super::material::colours(b)?;
+        let slides =
+            d.light.iter().filter_map(|l| l.barzel.as_ref()).filter_map(|b| Some((b.get_ref().slide.as_ref()?, b)));
+        for (slide, barzel) in slides {
+            let picture = b.picture(&slide.file, super::picture::Of::Factors, &barzel.span())?;
+            reflectances.extend(picture.typical());
+        }
         let unique = |mut list: Vec<Colour>| {
             let mut out: Vec<Colour> = Vec::new();
             list.retain(|c| {

@@ -3,22 +3,26 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::colour::{Colour, Edge};
+use super::picture::Of;
 use super::{Builder, Quantities};
 use crate::luminaire::placement::{Orientation, Placement};
 use crate::luminaire::{Kind as LampKind, Luminaire};
 use crate::render::bands::Bands;
 use crate::render::description::Error;
-use crate::render::description::light::{Lamp, Light as Described, Sun as DescribedSun};
+use crate::render::description::light::{
+    Environment as Surroundings, Lamp, Light as Described, Projection as Layout, Sun as DescribedSun,
+};
 use crate::render::description::quantity::Kind;
 use crate::render::light::Light;
 use crate::render::light::bounding::BoundingSphere;
 use crate::render::light::distant::Distant;
-use crate::render::light::environment::Environment;
-use crate::render::light::goniometric::{Goniometric, per_unit};
+use crate::render::light::environment::{Environment, Picture};
+use crate::render::light::goniometric::{Goniometric, Opening, per_unit};
 use crate::render::light::point::Point;
+use crate::render::light::projection::Projection;
 use crate::render::light::sky::{Sky, SkyType};
 use crate::render::light::spot::{Profile, Spot};
 use crate::render::light::sun::{Air, Moment, SunPosition};
@@ -31,6 +35,7 @@ pub(super) fn span(light: &Described) -> Range<usize> {
         light.lamp.as_ref().map(toml::Spanned::span),
         light.distant.as_ref().map(toml::Spanned::span),
         light.environment.as_ref().map(toml::Spanned::span),
+        light.barzel.as_ref().map(toml::Spanned::span),
         light.sky.as_ref().map(toml::Spanned::span),
         light.sun.as_ref().map(toml::Spanned::span),
         light.name.as_ref().map(toml::Spanned::span),
@@ -62,12 +67,13 @@ impl Builder<'_> {
             light.lamp.is_some(),
             light.distant.is_some(),
             light.environment.is_some(),
+            light.barzel.is_some(),
             light.sky.is_some(),
             light.sun.is_some(),
         ];
         if kinds.iter().filter(|k| **k).count() != 1 {
             let message = format!(
-                "light {} has not one kind; expected one of point, spot, lamp, distant, environment, sky, sun",
+                "light {} has not one kind; expected one of point, spot, lamp, distant, environment, barzel, sky, sun",
                 number + 1
             );
             return Err(self.wrong(&at, message));
@@ -114,9 +120,11 @@ impl Builder<'_> {
             return Ok(Arc::new(light));
         }
         if let Some(all) = &light.environment {
-            let r = all.get_ref().radiance;
-            let radiance = self.scaled(&colour, r.value, r.kind, bands, quantities, &at)?;
-            return Ok(Arc::new(Environment::constant(&radiance, sphere).map_err(wrong)?));
+            let colour = light.spectrum.as_ref().map(|_| &colour);
+            return self.environment(all.get_ref(), &at, colour, bands, quantities, sphere);
+        }
+        if let Some(barzel) = &light.barzel {
+            return self.barzel(barzel.get_ref(), &at, &colour, bands, quantities);
         }
         if let Some(sky) = &light.sky {
             let s = sky.get_ref();
@@ -141,7 +149,75 @@ impl Builder<'_> {
             return Ok(Arc::new(position.light(&irradiance, sphere).map_err(wrong)?));
         }
         let lamp = light.lamp.as_ref().expect("one of the kinds");
-        self.lamp(lamp.get_ref(), &lamp.span(), &colour, bands, quantities)
+        Ok(Arc::new(self.goniometric(lamp.get_ref(), &lamp.span(), &colour, bands, quantities)?))
+    }
+
+    /// Surroundings; `colour` is the light's own, where it has one.
+    fn environment(
+        &self,
+        e: &Surroundings,
+        at: &Range<usize>,
+        colour: Option<&Colour>,
+        bands: &Bands,
+        quantities: &Quantities,
+        sphere: BoundingSphere,
+    ) -> Result<Arc<dyn Light>, Error> {
+        let wrong = |e: crate::render::light::Error| self.wrong(at, e);
+        let Some(file) = &e.file else {
+            let Some(r) = e.radiance else {
+                return Err(self.wrong(at, "neither `radiance` nor `file`; expected one of them"));
+            };
+            if e.projection != Layout::default() || e.field_of_view.is_some() || e.look.is_some() || e.up.is_some() {
+                let message = "`projection`, `field_of_view`, `look` and `up` of surroundings without a `file`; expected a picture";
+                return Err(self.wrong(at, message));
+            }
+            let colour = colour.unwrap_or(&Colour::Constant(1.0));
+            let radiance = self.scaled(colour, r.value, r.kind, bands, quantities, at)?;
+            return Ok(Arc::new(Environment::constant(&radiance, sphere).map_err(wrong)?));
+        };
+        let picture = self.picture(file, Of::Light, at)?;
+        let white = match (picture.in_colours, e.radiance) {
+            (true, Some(r)) => {
+                let own = picture.white.colour();
+                self.scaled(colour.unwrap_or(&own), r.value, r.kind, bands, quantities, at)?
+            }
+            (false, None) if colour.is_none() => vec![1.0; bands.len()],
+            (true, None) => {
+                let message = "a picture in colours without a `radiance`; expected what its white (R = G = B = 1) stands for, such as `1 cd/m2`";
+                return Err(self.wrong(at, message));
+            }
+            (false, _) => {
+                let message =
+                    "a `radiance` or a `spectrum` beside a spectral picture, which has its own; expected neither";
+                return Err(self.wrong(at, message));
+            }
+        };
+        let half_field_rad = 0.5 * e.field_of_view.map_or(std::f64::consts::PI, |a| a.0);
+        let projection = match e.projection {
+            Layout::Equirectangular => Projection::Equirectangular,
+            Layout::MirrorBall => Projection::MirrorBall,
+            Layout::Fisheye => Projection::Equidistant { half_field_rad },
+            Layout::EquisolidFisheye => Projection::Equisolid { half_field_rad },
+        };
+        if e.field_of_view.is_some() && matches!(e.projection, Layout::Equirectangular | Layout::MirrorBall) {
+            return Err(self
+                .wrong(at, "a `field_of_view` of a picture that shows all directions; expected it only of a fisheye"));
+        }
+        let look = DVec3::from_array(e.look.unwrap_or([1.0, 0.0, 0.0]));
+        let up = DVec3::from_array(e.up.unwrap_or([0.0, 0.0, 1.0]));
+        let frame = look.try_normalize().zip(up.cross(look).try_normalize());
+        let Some((x, y)) = frame else {
+            return Err(self.wrong(at, "a `look` along `up`, or without length; expected two directions that differ"));
+        };
+        let to_world = DMat3::from_cols(x, y, x.cross(y));
+        let picture = Picture {
+            width: picture.width,
+            height: picture.height,
+            projection,
+            coefficients: picture.coefficients.clone(),
+            spectra: picture.spectra(bands, &white),
+        };
+        Ok(Arc::new(Environment::new(picture, to_world, sphere).map_err(wrong)?))
     }
 
     /// Where the sun stands, its direction as refracted by standard air.
@@ -172,14 +248,15 @@ impl Builder<'_> {
         Ok(position)
     }
 
-    fn lamp(
+    /// The light of a lamp file.
+    pub(super) fn goniometric(
         &self,
         lamp: &Lamp,
         at: &Range<usize>,
         colour: &Colour,
         bands: &Bands,
         quantities: &Quantities,
-    ) -> Result<Arc<dyn Light>, Error> {
+    ) -> Result<Goniometric, Error> {
         let luminaire: Luminaire = self.files.luminaire(&lamp.file).map_err(|e| self.wrong(at, e))?;
         let degrees = |a: Option<crate::render::description::quantity::Angle>| a.map_or(0.0, |a| a.0.to_degrees());
         let orientation = match lamp.aim {
@@ -198,6 +275,7 @@ impl Builder<'_> {
         };
         let placement =
             Placement::new(DVec3::from_array(lamp.at), orientation, lamp.dimming).map_err(|e| self.wrong(at, e))?;
+        let opening = luminaire.opening.as_ref().and_then(Opening::of);
         let weights = match luminaire.kind {
             LampKind::Luminous => &quantities.luminous,
             LampKind::Radiant => &quantities.radiant,
@@ -219,7 +297,13 @@ impl Builder<'_> {
                 luminaire.distribution.scaled(flux.value / file)
             }
         };
-        Ok(Arc::new(Goniometric::new(table, &placement, &unit).map_err(|e| self.wrong(at, e))?))
+        let made = Goniometric::new(table, &placement, &unit).map_err(|e| self.wrong(at, e))?;
+        if !lamp.opening {
+            return Ok(made);
+        }
+        let opening =
+            opening.ok_or_else(|| self.wrong(at, "`opening` of a lamp file that states no flat luminous opening"))?;
+        Ok(made.with_opening(opening))
     }
 
     /// Either of two quantities.

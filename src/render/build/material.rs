@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::Builder;
 use super::colour::{Colour, Edge};
+use super::picture::Of;
+use super::{Builder, Quantities};
 use crate::brdf::Brdf;
 use crate::brdf::description::{Bands as BrdfBands, Material as Model};
 use crate::brdf::fresnel::Fresnel;
@@ -16,10 +17,11 @@ use crate::brdf::medium::refractive_index;
 use crate::brdf::microfacet::{Distribution, Masking, Microfacet};
 use crate::brdf::specular::Specular;
 use crate::geometry::direction;
+use crate::render::audit::bias::{self, SingleScattering};
 use crate::render::bands::{Bands, RANGE_NM};
 use crate::render::description::Error;
 use crate::render::description::material::{
-    Checkerboard as Fields, Dielectric as Glass, Material as Described, Metal, Pane,
+    Checkerboard as Fields, Dielectric as Glass, Material as Described, Metal, Pane, Texture as DescribedTexture,
 };
 use crate::render::description::spectrum::SpectrumSource;
 use crate::render::material::Material;
@@ -29,7 +31,7 @@ use crate::render::material::fluorescent::Fluorescent;
 use crate::render::material::mixture::Mixture;
 use crate::render::material::opaque::Opaque;
 use crate::render::material::rough_dielectric::RoughDielectric;
-use crate::render::material::textured::{Checkerboard, Textured};
+use crate::render::material::textured::{Checkerboard, Picture, Textured};
 use crate::render::material::thin_slab::ThinSlab;
 use crate::spectrum::integrate::Weighting;
 
@@ -53,6 +55,10 @@ impl Builder<'_> {
             if let Some(fields) = &m.checkerboard {
                 let board = self.checkerboard(fields.get_ref(), bands, &fields.span())?;
                 material = Arc::new(Textured::new(material, Box::new(board)));
+            }
+            if let Some(texture) = &m.texture {
+                let picture = self.texture(texture.get_ref(), bands, &texture.span())?;
+                material = Arc::new(Textured::new(material, Box::new(picture)));
             }
             done.push((m.name.get_ref().clone(), material));
         }
@@ -123,6 +129,22 @@ impl Builder<'_> {
         model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm())).map_err(|e| place(self, text, &e))
     }
 
+    /// What the materials that are described as BRDFs lose to a single scattering, weighed by V(λ).
+    pub(super) fn single_scattering(
+        &self,
+        bands: &Bands,
+        quantities: &Quantities,
+    ) -> Result<Vec<(String, SingleScattering)>, Error> {
+        let mut out = Vec::new();
+        for (m, text) in self.description.material.iter().filter_map(|m| Some((m, m.brdf.as_ref()?))) {
+            let lost = bias::single_scattering(self.model(text, bands)?.as_ref(), &quantities.luminous);
+            if let Some(lost) = lost.map_err(|e| self.wrong(&text.span(), e))? {
+                out.push((m.name.get_ref().clone(), lost));
+            }
+        }
+        Ok(out)
+    }
+
     fn metal(&self, metal: &Metal, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
         let (n, k) = refractive_index(&metal.medium, bands.wavelengths_nm()).map_err(|e| self.wrong(at, e))?;
         let fresnel = Fresnel::conductor(&n, &k).map_err(|e| self.wrong(at, e))?;
@@ -182,6 +204,18 @@ impl Builder<'_> {
         Ok(Arc::new(ThinSlab::new(&index, &passed).map_err(|e| self.wrong(at, e))?))
     }
 
+    fn texture(&self, t: &DescribedTexture, bands: &Bands, at: &Range<usize>) -> Result<Picture, Error> {
+        let picture = self.picture(&t.file, Of::Factors, at)?;
+        let basis = picture.spectra(bands, &vec![1.0; bands.len()]);
+        let made = Picture::new([picture.width, picture.height], basis, picture.coefficients.clone());
+        let made = made.map_err(|e| self.wrong(at, format!("{}: {e}", t.file)))?;
+        let repeat = t.repeat.unwrap_or([1.0; 2]);
+        if repeat.contains(&0.0) {
+            return Err(self.wrong(at, "a `repeat` of 0; expected how often the picture is repeated"));
+        }
+        Ok(made.repeated(repeat))
+    }
+
     fn checkerboard(&self, fields: &Fields, bands: &Bands, at: &Range<usize>) -> Result<Checkerboard, Error> {
         let of = |source| self.values(source, bands, Edge::Constant, at);
         Checkerboard::new(of(&fields.even)?, of(&fields.odd)?, fields.fields).map_err(|e| self.wrong(at, e))
@@ -195,7 +229,7 @@ fn by_formula(bands: &Bands, formula: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// How the materials depend on wavelength, as far as the choice of wavelengths goes.
 pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
-    let mut out = Vec::new();
+    let (mut out, mut pictures) = (Vec::new(), Vec::new());
     let mut add = |source: &SpectrumSource, at: &Range<usize>| {
         out.push(Colour::of(b, source, Edge::Constant, at)?);
         Ok(())
@@ -207,6 +241,9 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
         if let Some(board) = &m.checkerboard {
             add(&board.get_ref().even, &board.span())?;
             add(&board.get_ref().odd, &board.span())?;
+        }
+        if let Some(texture) = &m.texture {
+            pictures.extend(b.picture(&texture.get_ref().file, Of::Factors, &texture.span())?.typical());
         }
         if let Some(pane) = &m.pane
             && let Some(source) = &pane.get_ref().transmittance
@@ -221,6 +258,7 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
             [&d.reflectance, &d.absorption, &d.emission].into_iter().try_for_each(|s| add(s, &dye.span()))?;
         }
     }
+    out.append(&mut pictures);
     for m in &b.description.material {
         if let Some(text) = &m.brdf {
             out.push(colour_of(b, text)?);

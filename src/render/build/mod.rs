@@ -1,22 +1,29 @@
 //! From a scene's description to a scene: files asked for, wavelengths chosen, everything prepared for the bands.
 
+mod analysis;
+mod barzel;
 mod colour;
 mod instrument;
 mod light;
 mod material;
+mod picture;
 mod surface;
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
+use super::audit::bias::SingleScattering;
 use super::bands::Bands;
 use super::description::spectrum::SpectrumSource;
-use super::description::{Description, Error, Solver};
+use super::description::{Description, Error, Model, Solver};
+use super::format::Object;
 use super::integrator::path::{Follow, Limits};
 use super::light::Light;
 use super::light::bounding::BoundingSphere;
 use super::measure::Settings;
-use super::mesh::MeshData;
 use super::scene::{Part, Scene};
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
@@ -24,7 +31,9 @@ use crate::luminaire::Luminaire;
 use crate::photometry::luminous::Efficiency;
 use crate::spectrum::Spectrum;
 
+pub use analysis::Analysis;
 pub use instrument::{Instrument, Kind, Quantities};
+pub use picture::PictureFile;
 
 /// Where a scene's files come from; names are as the scene gives them.
 pub trait Files {
@@ -40,11 +49,17 @@ pub trait Files {
     /// What is wrong with it, in words.
     fn luminaire(&self, file: &str) -> Result<Luminaire, String>;
 
-    /// The meshes in a file.
+    /// The meshes in a file, with the names they have there.
     ///
     /// # Errors
     /// What is wrong with it, in words.
-    fn meshes(&self, file: &str) -> Result<Vec<MeshData>, String>;
+    fn meshes(&self, file: &str) -> Result<Vec<Object>, String>;
+
+    /// The picture in a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    fn picture(&self, file: &str) -> Result<PictureFile, String>;
 }
 
 /// A scene that is ready to be rendered.
@@ -61,8 +76,33 @@ pub struct Built {
     /// The error that is left in sums over wavelength, relative: measured on the products of the scene's own spectra, against 1 nm;
     /// `None` where the step was asked for.
     pub wavelength_error: Option<f64>,
+    /// What of the model of light the scene needs.
+    pub analysis: Analysis,
     /// Names of the lights, in the order of the scene's.
     pub light_names: Vec<String>,
+    /// Names of the materials; the last is that of shapes without one.
+    pub material_names: Vec<String>,
+    /// The material of each surface, by its place in the names.
+    pub material_of_surface: Vec<usize>,
+    /// What materials lose to a single scattering, by name.
+    pub single_scattering: Vec<(String, SingleScattering)>,
+    /// Meshes that lost triangles.
+    pub incomplete: Vec<Incomplete>,
+}
+
+/// A mesh of a file some of whose triangles were left out, because they span no area or have a corner that is not finite.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Incomplete {
+    /// The file, as the scene names it.
+    pub file: String,
+    /// The mesh's name there, if it has one.
+    pub mesh: Option<String>,
+    /// How many triangles were left out.
+    pub triangles: usize,
+    /// How many there were.
+    pub of: usize,
+    /// The first that was left out, from 1, as the faces of the mesh are cut into triangles one after the other.
+    pub first: usize,
 }
 
 /// What the parts of the builder share.
@@ -70,6 +110,9 @@ struct Builder<'a> {
     text: &'a str,
     description: &'a Description,
     files: &'a dyn Files,
+    meshes: RefCell<surface::Meshes>,
+    /// By file, and whether as light.
+    pictures: RefCell<HashMap<(String, bool), Rc<picture::Channels>>>,
 }
 
 impl Builder<'_> {
@@ -83,7 +126,7 @@ impl Builder<'_> {
 /// # Errors
 /// The first mistake, with its place in the text.
 pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result<Built, Error> {
-    let builder = Builder { text, description, files };
+    let builder = Builder { text, description, files, meshes: RefCell::default(), pictures: RefCell::default() };
     builder.check_names()?;
     let colours = colour::Colours::new(&builder)?;
     let (bands, wavelength_error) = builder.bands(&colours)?;
@@ -91,12 +134,31 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let materials = builder.materials(&bands)?;
     let (parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
     let sphere = around(&parts);
-    let mut light_names = Vec::new();
-    let mut lights: Vec<Arc<dyn Light>> = Vec::new();
+    let mut lights: Vec<(String, Arc<dyn Light>)> = Vec::new();
     for (number, light) in description.light.iter().enumerate() {
-        lights.push(builder.light(light, number, &bands, &quantities, sphere)?);
-        light_names.push(light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone()));
+        let name = light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone());
+        lights.push((name, builder.light(light, number, &bands, &quantities, sphere)?));
     }
+    let mut dark_lights = Vec::new();
+    if description.render.model == Model::Minimal {
+        let mut flux = vec![0.0; bands.len()];
+        lights.retain(|(name, light)| {
+            light.flux(&mut flux);
+            let shines = flux.iter().any(|f| *f != 0.0);
+            if !shines {
+                dark_lights.push(name.clone());
+            }
+            shines
+        });
+    }
+    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, dark_lights, bands.len());
+    let (mut light_names, lights): (Vec<_>, Vec<_>) = lights.into_iter().unzip();
+    let materials_of = description.shape.iter().zip(&surfaces).flat_map(|(shape, surfaces)| {
+        let wanted = shape.material.as_ref().map(toml::Spanned::get_ref);
+        let found = wanted.and_then(|wanted| materials.iter().position(|(name, _)| name == wanted));
+        std::iter::repeat_n(found.unwrap_or(materials.len()), surfaces.len())
+    });
+    let material_of_surface = materials_of.collect();
     for (number, (shape, surfaces)) in description.shape.iter().zip(&surfaces).enumerate() {
         if shape.emission.is_some() {
             light_names.extend(surfaces.clone().map(|_| surface::name(shape, number)));
@@ -110,9 +172,25 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         Solver::Whitted => Follow::Specular,
         Solver::Direct => Follow::Nothing,
     };
-    let limits = Limits { follow, max_edges: render.max_edges, ..Limits::default() };
+    let limits =
+        Limits { follow, max_edges: render.max_edges, polarisation: analysis.polarisation, ..Limits::default() };
+    let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
+    let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
+    let incomplete = builder.meshes.into_inner().incomplete;
     let settings = Settings::new(render.seed, limits, scene.bands().len());
-    Ok(Built { scene, instruments, settings, quantities, wavelength_error, light_names })
+    Ok(Built {
+        scene,
+        instruments,
+        settings,
+        quantities,
+        wavelength_error,
+        analysis,
+        light_names,
+        material_names,
+        material_of_surface,
+        single_scattering,
+        incomplete,
+    })
 }
 
 /// The sphere around all bounded surfaces, and around the origin where there are none.
@@ -169,6 +247,7 @@ impl Builder<'_> {
                 let message = format!("a `wavelength_step_nm` of {step}; expected 1 to 100");
                 return Err(self.wrong(&(0..0), message));
             }
+            None if render.model == Model::Full => (Bands::uniform(super::bands::RANGE_NM.0, 1.0), Some(0.0)),
             None if !colours.has_densities() && !lines.is_empty() => return Ok((Bands::lines(lines), Some(0.0))),
             None => {
                 let products = colours.products();

@@ -1,17 +1,20 @@
 //! Shapes and what they emit.
 
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use toml::Spanned;
 
+use super::analysis::is_flat;
 use super::colour::{Colour, Edge};
 use super::material::Named;
-use super::{Builder, Quantities};
+use super::{Builder, Incomplete, Quantities};
 use crate::brdf::lambert::Lambert;
 use crate::render::bands::Bands;
 use crate::render::description::Error;
+use crate::render::description::light::Lamp;
 use crate::render::description::surface::{Emission as Emitted, Mesh as DescribedMesh, Shape as Described, Step};
 use crate::render::emission::Emission;
 use crate::render::material::Material;
@@ -25,11 +28,22 @@ use crate::render::shape::disk::Disk;
 use crate::render::shape::error::ShapeError;
 use crate::render::shape::plane::Plane;
 use crate::render::shape::polygon::Polygon;
+use crate::render::shape::polyhedron::Polyhedron;
 use crate::render::shape::rectangle::Rectangle;
 use crate::render::shape::sphere::Sphere;
+use crate::render::shape::triangle::Triangle;
 
 /// The surfaces of a shape, or why there are none.
 type Faces = Result<Vec<Arc<dyn Shape>>, ShapeError>;
+
+/// Files of meshes that were read.
+#[derive(Debug, Default)]
+pub(super) struct Meshes {
+    /// By name, and whether without normals.
+    known: HashMap<(String, bool), Vec<Arc<Mesh>>>,
+    /// Those that lost triangles.
+    pub(super) incomplete: Vec<Incomplete>,
+}
 
 /// The name of a shape in reports.
 pub(super) fn name(shape: &Described, number: usize) -> String {
@@ -60,6 +74,9 @@ impl Builder<'_> {
             ranges.push(parts.len()..parts.len() + faces.len());
             let emission = match &shape.emission {
                 None => None,
+                Some(e) if e.get_ref().lamp.is_some() => {
+                    Some(Arc::new(self.lamp_emission(shape, e, &faces, bands, quantities)?))
+                }
                 Some(e) => Some(Arc::new(self.emission(e.get_ref(), &e.span(), area, bands, quantities)?)),
             };
             parts.extend(faces.into_iter().map(|shape| Part {
@@ -99,6 +116,15 @@ impl Builder<'_> {
         if let Some(s) = &shape.polygon {
             out.push((s.span(), one(Polygon::new(s.get_ref().corners.iter().copied().map(v).collect()))));
         }
+        if let Some(s) = &shape.triangle {
+            let [a, b, c] = s.get_ref().corners.map(v);
+            out.push((s.span(), one(Triangle::new(a, b, c))));
+        }
+        if let Some(s) = &shape.polyhedron {
+            let p = s.get_ref();
+            let vertices: Vec<DVec3> = p.vertices.iter().copied().map(v).collect();
+            out.push((s.span(), one(Polyhedron::new(&vertices, &p.faces))));
+        }
         if let Some(s) = &shape.cuboid {
             let c = s.get_ref();
             out.push((s.span(), cuboid(v(c.from), v(c.to), c.inwards)));
@@ -116,7 +142,7 @@ impl Builder<'_> {
             (first, _) => {
                 let at = first.map(|f| f.0).or_else(|| shape.name.as_ref().map(Spanned::span)).unwrap_or(0..0);
                 let message = format!(
-                    "{} has not one kind; expected one of sphere, plane, disk, rectangle, polygon, box, cylinder, mesh",
+                    "{} has not one kind; expected one of sphere, plane, disk, rectangle, triangle, polygon, polyhedron, box, cylinder, mesh",
                     name(shape, number)
                 );
                 Err(self.wrong(&at, message))
@@ -132,11 +158,7 @@ impl Builder<'_> {
             None => vec![base],
             Some(all) => all.iter().map(|s| Ok(self.transform(s, at)? * base)).collect::<Result<_, Error>>()?,
         };
-        for mut data in self.files.meshes(&m.file).map_err(|e| self.wrong(at, e))? {
-            if m.flat {
-                data.normals.clear();
-            }
-            let mesh = Arc::new(Mesh::new(data).map_err(|e| self.wrong(at, format!("{}: {e}", m.file)))?);
+        for mesh in self.searched(m, at)? {
             for to_world in &copies {
                 let placed = PlacedMesh::new(Arc::clone(&mesh), *to_world);
                 let message = "a transform that cannot be undone; expected a scale other than 0";
@@ -147,6 +169,34 @@ impl Builder<'_> {
             return Err(self.wrong(at, format!("{}: no triangles, or no instance", m.file)));
         }
         Ok(out)
+    }
+
+    /// The meshes of a file with their trees; a file is read once, however many shapes name it.
+    fn searched(&self, m: &DescribedMesh, at: &Range<usize>) -> Result<Vec<Arc<Mesh>>, Error> {
+        let key = (m.file.clone(), m.flat);
+        if let Some(known) = self.meshes.borrow().known.get(&key) {
+            return Ok(known.clone());
+        }
+        let (mut meshes, mut incomplete) = (Vec::new(), Vec::new());
+        for mut object in self.files.meshes(&m.file).map_err(|e| self.wrong(at, e))? {
+            if m.flat {
+                object.mesh.normals.clear();
+            }
+            let of = object.mesh.triangles.len();
+            let mesh = Mesh::new(object.mesh).map_err(|e| self.wrong(at, format!("{}: {e}", m.file)))?;
+            if let Some(first) = mesh.first_skipped() {
+                let (file, triangles) = (m.file.clone(), mesh.skipped());
+                incomplete.push(Incomplete { file, mesh: object.name, triangles, of, first: first + 1 });
+            }
+            meshes.push(Arc::new(mesh));
+        }
+        let mut all = self.meshes.borrow_mut();
+        // Flat or not, the file's triangles are the same.
+        if !all.known.contains_key(&(m.file.clone(), !m.flat)) {
+            all.incomplete.append(&mut incomplete);
+        }
+        all.known.insert(key, meshes.clone());
+        Ok(meshes)
     }
 
     fn transform(&self, steps: &[Step], at: &Range<usize>) -> Result<DAffine3, Error> {
@@ -163,6 +213,44 @@ impl Builder<'_> {
             };
             Ok(next * before)
         })
+    }
+
+    /// A flat shape that shines as a photometric file says.
+    fn lamp_emission(
+        &self,
+        shape: &Described,
+        emission: &Spanned<Emitted>,
+        faces: &[Arc<dyn Shape>],
+        bands: &Bands,
+        quantities: &Quantities,
+    ) -> Result<Emission, Error> {
+        let (e, at) = (emission.get_ref(), emission.span());
+        let (Some(lamp), true, [face]) = (&e.lamp, is_flat(shape), faces) else {
+            return Err(
+                self.wrong(&at, "`lamp` of a shape that is not flat; expected a rectangle, disk, triangle or polygon")
+            );
+        };
+        if e.radiance.is_some() || e.exitance.is_some() || e.two_sided || e.cosine_power != 0.0 {
+            return Err(self.wrong(
+                &at,
+                "`lamp` beside another distribution or amount; expected at most a `flux` and a `spectrum`",
+            ));
+        }
+        let colour = e.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, &at))?;
+        let middle = face.sample_area([0.5; 3]);
+        let described = Lamp {
+            file: lamp.file.clone(),
+            at: middle.position.to_array(),
+            aim: Some((middle.position + middle.normal).to_array()),
+            rotation: None,
+            tilt: None,
+            spin: lamp.spin,
+            flux: e.flux,
+            dimming: 1.0,
+            opening: false,
+        };
+        let light = Arc::new(self.goniometric(&described, &at, &colour, bands, quantities)?);
+        Ok(Emission::of_lamp(light, face.area(), bands.len()))
     }
 
     fn emission(

@@ -45,6 +45,10 @@ pub struct Material {
     #[serde(default)]
     #[schemars(with = "Option<Checkerboard>")]
     pub checkerboard: Option<Spanned<Checkerboard>>,
+    /// A picture over the shape's texture coordinates, whose factors multiply what the material scatters.
+    #[serde(default)]
+    #[schemars(with = "Option<Texture>")]
+    pub texture: Option<Spanned<Texture>>,
     /// Dark from the inside of shapes (reflectance, brdf, dye); otherwise both sides are alike.
     #[serde(default)]
     pub one_sided: bool,
@@ -145,4 +149,15 @@ pub struct Checkerboard {
     pub odd: SpectrumSource,
     /// Fields along both texture coordinates.
     pub fields: [u32; 2],
+}
+
+/// A picture of factors, 0 to 1.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Texture {
+    /// A picture, beside the scene: a spectral one of reflectances, or one in colours, whose pixels are those of a surface under D65.
+    pub file: String,
+    /// How often it is repeated along both texture coordinates; once without it.
+    #[serde(default)]
+    pub repeat: Option<[f64; 2]>,
 }

@@ -79,6 +79,10 @@ pub struct Render {
     pub wavelength_step_nm: Option<f64>,
     /// The greatest error of the sum over wavelengths, relative.
     pub wavelength_tolerance: f64,
+    /// Whether only what the scene requires is modelled.
+    pub model: Model,
+    /// Whether what mirrors and glass polarise is followed to the next of them; where it matters without it.
+    pub polarisation: Option<bool>,
 }
 
 impl Default for Render {
@@ -92,6 +96,8 @@ impl Default for Render {
             max_edges: None,
             wavelength_step_nm: None,
             wavelength_tolerance: 1e-3,
+            model: Model::Minimal,
+            polarisation: None,
         }
     }
 }
@@ -106,6 +112,16 @@ pub enum Solver {
     Whitted,
     /// Direct light.
     Direct,
+}
+
+/// How much is modelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// What the scene requires, to the tolerances asked for.
+    Minimal,
+    /// Everything: wavelengths 1 nm apart, polarisation, lights of no flux. The readings are the same within their error bars.
+    Full,
 }
 
 /// What is wrong with a scene, and where.

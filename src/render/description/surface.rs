@@ -40,10 +40,18 @@ pub struct Shape {
     #[serde(default)]
     #[schemars(with = "Option<Rectangle>")]
     pub rectangle: Option<Spanned<Rectangle>>,
-    /// A triangle or a flat polygon, corners in order; its outside is where they stand anticlockwise.
+    /// A triangle; its outside is where the corners stand anticlockwise.
+    #[serde(default)]
+    #[schemars(with = "Option<Triangle>")]
+    pub triangle: Option<Spanned<Triangle>>,
+    /// A flat polygon, corners in order; its outside is where they stand anticlockwise.
     #[serde(default)]
     #[schemars(with = "Option<Polygon>")]
     pub polygon: Option<Spanned<Polygon>>,
+    /// A closed solid with flat faces.
+    #[serde(default)]
+    #[schemars(with = "Option<Polyhedron>")]
+    pub polyhedron: Option<Spanned<Polyhedron>>,
     /// A box with its edges along the axes: its outside outside, or inside for a room.
     #[serde(default, rename = "box")]
     #[schemars(with = "Option<Cuboid>")]
@@ -52,7 +60,7 @@ pub struct Shape {
     #[serde(default)]
     #[schemars(with = "Option<Cylinder>")]
     pub cylinder: Option<Spanned<Cylinder>>,
-    /// A mesh of triangles in a file (PLY, OBJ).
+    /// A mesh of triangles in a file (PLY, OBJ, glTF).
     #[serde(default)]
     #[schemars(with = "Option<Mesh>")]
     pub mesh: Option<Spanned<Mesh>>,
@@ -80,6 +88,20 @@ pub struct Emission {
     /// Both sides shine.
     #[serde(default)]
     pub two_sided: bool,
+    /// It shines as a photometric file says, every part of it alike (flat shapes); its own flux replaces the file's.
+    #[serde(default)]
+    pub lamp: Option<LampFile>,
+}
+
+/// The distribution of a photometric file.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LampFile {
+    /// LM-63, EULUMDAT or TM-33, beside the scene; its axis is the shape's normal.
+    pub file: String,
+    /// Turn about the axis, as of a lamp that is aimed.
+    #[serde(default)]
+    pub spin: Option<Angle>,
 }
 
 /// A sphere.
@@ -135,6 +157,24 @@ pub struct Polygon {
     pub corners: Vec<Vector>,
 }
 
+/// A triangle.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Triangle {
+    /// Its corners, m.
+    pub corners: [Vector; 3],
+}
+
+/// A closed solid.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Polyhedron {
+    /// Its corners, m.
+    pub vertices: Vec<Vector>,
+    /// The corners of each face by their numbers from 0, anticlockwise from outside; every edge belongs to two faces.
+    pub faces: Vec<Vec<usize>>,
+}
+
 /// A box.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -167,7 +207,7 @@ pub struct Cylinder {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mesh {
-    /// PLY or OBJ, beside the scene; its coordinates are metres before the transform.
+    /// PLY, OBJ or glTF, beside the scene; its coordinates are metres before the transform.
     pub file: String,
     /// Flat triangles, although the file has normals at the corners.
     #[serde(default)]

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | [`ply`] | Stanford PLY, text and binary of both byte orders: one mesh |
 //! | [`obj`] | Wavefront OBJ: one mesh per object and material |
+//! | [`gltf`] | glTF 2.0, text and binary: one mesh per primitive of each node |
 //!
 //! Faces with more than three corners are cut into triangles (fans from a corner that sees all the others). Memory is bounded by a multiple of the file's size,
 //! whatever the file announces.
 
+pub mod gltf;
 pub mod obj;
 pub mod ply;
 

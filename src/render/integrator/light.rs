@@ -4,6 +4,8 @@
 //! f_s |cosθ| / pdf, so that the mean over packets is the flux itself. What is done with packets (counted through a sphere, sorted by
 //! the direction in which they leave) is the visitor's business.
 
+use glam::DVec3;
+
 use super::frame::Frame;
 use super::polarisation::Polarisation;
 use crate::math::sampling;
@@ -14,11 +16,22 @@ use crate::render::scene::Scene;
 
 /// Who looks at packets on their way. Slices are flux per band, W/nm or W, of one packet.
 pub trait Visitor {
+    /// The packet that is emitted next comes from this light.
+    fn starts(&mut self, light: usize) {
+        let _ = light;
+    }
+
     /// A packet leaves a light.
     fn emitted(&mut self, flux: &[f64]);
 
     /// A packet flies along a ray for `length` metres (infinite: it leaves the scene).
     fn flight(&mut self, ray: &Ray, length: f64, flux: &[f64]);
+
+    /// A packet with `flux`, after fluorescence and textures, is about to be scattered; it came from the direction `arriving` of the
+    /// surface's own frame.
+    fn scatters(&mut self, surface: usize, arriving: DVec3, flux: &[f64]) {
+        let _ = (surface, arriving, flux);
+    }
 
     /// A packet arrives at a surface with `before` and goes on with `after` (zero where it ends).
     fn met(&mut self, surface: usize, before: &[f64], after: &[f64]);
@@ -72,6 +85,7 @@ impl<'a> LightTracer<'a> {
         let probability = self.lights[index] - if index == 0 { 0.0 } else { self.lights[index - 1] };
         let Some(mut ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
         self.flux.iter_mut().for_each(|f| *f /= probability);
+        visitor.starts(index);
         visitor.emitted(&self.flux);
         let start: f64 = self.flux.iter().sum();
         let mut hero = self.heroes.partition_point(|&s| s <= hero).min(self.heroes.len() - 1);
@@ -94,6 +108,7 @@ impl<'a> LightTracer<'a> {
                 hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
                 split = false;
             }
+            visitor.scatters(surface, arriving, &self.flux);
             let drawn = material.sample(arriving, [u0, u1, u2], Transport::Flux, hero, &mut self.weights);
             let next = drawn.and_then(|drawn| {
                 let direction = frame.world(drawn.direction);

@@ -202,7 +202,8 @@ impl<'a> PathTracer<'a> {
     /// Adds what the surface at the end of an edge emits towards it.
     fn emission(&mut self, edge: &Edge, surface: usize, point: &SurfacePoint) {
         let Some(emission) = self.scene.emission(surface) else { return };
-        let profile = emission.profile(-point.normal.dot(edge.ray.direction));
+        let away = -edge.ray.direction;
+        let profile = emission.profile_towards(away, point.normal.dot(away));
         if profile == 0.0 {
             return;
         }

@@ -56,7 +56,8 @@ impl Light for AreaLight {
             towards.distance = crossing.t;
             self.shape.surface(&ray, &crossing).normal
         };
-        let profile = self.emission.profile(-normal.dot(towards.direction));
+        let away = -towards.direction;
+        let profile = self.emission.profile_towards(away, normal.dot(away));
         if profile == 0.0 {
             return None;
         }
@@ -73,6 +74,11 @@ impl Light for AreaLight {
     }
 
     fn emit(&self, u: [f64; 5], flux: &mut [f64]) -> Option<Ray> {
+        if let Some(lamp) = self.emission.lamp() {
+            let direction = lamp.emit([u[3], u[4], 0.0, 0.0, 0.0], flux)?.direction;
+            let point = self.shape.sample_area([u[0], u[1], u[2]]);
+            return Some(Ray { origin: point.origin_towards(direction), direction });
+        }
         let (back, turned) = if self.emission.is_two_sided() { sampling::split(u[3], 0.5) } else { (false, u[3]) };
         let point = self.shape.sample_area([u[0], u[1], u[2]]);
         let local = sampling::cosine_power([turned, u[4]], self.emission.power() + 1.0);

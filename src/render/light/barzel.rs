@@ -391,6 +391,10 @@ impl Light for Barzel {
         (gain > 0.0).then(|| Ray { origin: self.position, direction: self.to_world * local })
     }
 
+    fn is_one_direction(&self) -> bool {
+        true
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         flux.copy_from_slice(&self.flux);
     }

@@ -97,6 +97,10 @@ impl Light for Distant {
         Some(self.scene.ray_from(self.draw([u, v]).0, [s, t]))
     }
 
+    fn is_one_direction(&self) -> bool {
+        self.depth == 0.0
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         let over_irradiance = if self.depth == 0.0 { 1.0 } else { self.radiance_per_irradiance * TAU * self.depth };
         write(flux, &self.irradiance, over_irradiance * self.scene.cross_section());

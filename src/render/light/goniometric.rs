@@ -192,6 +192,29 @@ impl Goniometric {
         self.intensity(h, v, factor, radiance);
     }
 
+    /// Writes a factor times the greatest intensity of the table, W/(sr·nm) or W/sr; zero for spectra by direction, which have no one
+    /// peak.
+    pub fn peak_intensity(&self, factor: f64, out: &mut [f64]) {
+        match &self.spectra {
+            Spectra::Shared(per_unit) => write(out, per_unit, factor * self.table.peak().0),
+            Spectra::PerBand(_) => out.fill(0.0),
+        }
+    }
+
+    /// The intensity in `direction` (unit, world, away from the luminaire) over the greatest; 0 where there is none.
+    #[must_use]
+    pub fn relative_intensity(&self, direction: DVec3) -> f64 {
+        let peak = self.table.peak().0;
+        if peak > 0.0 { self.table.towards(self.to_room.transpose() * direction) / peak } else { 0.0 }
+    }
+
+    /// The flux over the greatest intensity, sr.
+    #[must_use]
+    pub fn flux_per_peak(&self) -> f64 {
+        let peak = self.table.peak().0;
+        if peak > 0.0 { self.table.total_flux() / peak } else { 0.0 }
+    }
+
     /// Writes a factor times the intensity per band at angles of the table, degrees.
     fn intensity(&self, horizontal_deg: f64, vertical_deg: f64, factor: f64, out: &mut [f64]) {
         match &self.spectra {
@@ -228,6 +251,10 @@ impl Light for Goniometric {
         self.intensity(h, v, solid_angle(system, columns, rows) / drawn.probability, flux);
         let direction = self.to_room * self.table.direction(h, v);
         Some(Ray { origin: self.origin([s, t]), direction })
+    }
+
+    fn is_one_direction(&self) -> bool {
+        self.opening.is_none()
     }
 
     fn flux(&self, flux: &mut [f64]) {

@@ -66,6 +66,11 @@ pub trait Light: std::fmt::Debug + Send + Sync {
     /// positive figure is right (infinite at a point light itself), a close one makes less noise.
     fn importance(&self, from: DVec3) -> f64;
 
+    /// Whether it reaches every point from one direction, so that what arrives is known in closed form and none has to be drawn.
+    fn is_one_direction(&self) -> bool {
+        false
+    }
+
     /// Whether anything may stand between it and what it lights; a production light may shine through.
     fn casts_shadows(&self) -> bool {
         true

@@ -58,6 +58,10 @@ impl Light for Point {
         Some(Ray { origin: self.position, direction: cone([u, v], 2.0) })
     }
 
+    fn is_one_direction(&self) -> bool {
+        true
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         write(flux, &self.intensity, 4.0 * PI);
     }

@@ -105,6 +105,10 @@ impl Light for Spot {
         Some(Ray { origin: self.position, direction: local.x * x + local.y * y + local.z * self.axis })
     }
 
+    fn is_one_direction(&self) -> bool {
+        true
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         write(flux, &self.intensity, self.solid_angle());
     }

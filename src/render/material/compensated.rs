@@ -57,6 +57,16 @@ impl Compensated {
         Ok(Self { single, albedo, scale })
     }
 
+    /// Writes what the compensation adds to the albedo of one scattering, per band, for light from a direction above the horizon, and
+    /// what it adds to the mean over the hemisphere (light from everywhere).
+    pub fn regained(&self, incident: DVec3, here: &mut [f64], mean: &mut [f64]) {
+        let lost = self.albedo.average_lost();
+        let share = PI * self.lost(incident) * lost;
+        for ((h, m), s) in here.iter_mut().zip(mean).zip(&self.scale) {
+            (*h, *m) = (s * share, s * PI * lost * lost);
+        }
+    }
+
     fn lost(&self, direction: DVec3) -> f64 {
         self.albedo.lost(direction)
     }
@@ -124,8 +134,8 @@ impl Brdf for Compensated {
         if incident.z <= 0.0 {
             return error;
         }
-        let again = PI * self.lost(incident) * self.albedo.average_lost();
-        reflectance.iter_mut().zip(&self.scale).for_each(|(r, s)| *r += s * again);
+        let share = PI * self.lost(incident) * self.albedo.average_lost();
+        reflectance.iter_mut().zip(&self.scale).for_each(|(r, s)| *r += s * share);
         error + 5e-4
     }
 }

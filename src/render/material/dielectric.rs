@@ -22,7 +22,7 @@
 
 use glam::DVec3;
 
-use super::{Material, Scattered, Transport};
+use super::{Material, Nature, Scattered, Transport};
 use crate::brdf::fresnel::{Components, dielectric, dielectric_components};
 use crate::brdf::parameter::{Error, Parameter, same_bands};
 use crate::math::sampling::split;
@@ -147,6 +147,10 @@ impl Material for Dielectric {
             *component = if reflects { reflected } else { reflected.transmitted() };
         }
         true
+    }
+
+    fn nature(&self) -> Nature {
+        Nature { disperses: self.interface.disperses, ..Nature::default() }
     }
 
     fn is_delta(&self) -> bool {

@@ -27,7 +27,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use super::{Material, Scattered, Transport};
+use super::{Material, Nature, Scattered, Transport};
 use crate::brdf::fresnel::REFLECTANCE;
 use crate::brdf::parameter::{Error, Parameter, at_most_one, same_bands};
 use crate::math::sampling;
@@ -118,6 +118,10 @@ impl Material for Fluorescent {
         }
         weights.fill(1.0);
         Some(Scattered { direction, pdf: sampling::cosine_hemisphere_pdf(up.z), delta: false, split: false })
+    }
+
+    fn nature(&self) -> Nature {
+        Nature { fluoresces: true, ..Nature::default() }
     }
 
     fn pdf(&self, outgoing: DVec3, incident: DVec3, _hero: usize) -> f64 {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Material, Scattered, Transport};
+use super::{Material, Nature, Scattered, Transport};
 use crate::brdf::fresnel::Components;
 use crate::brdf::parameter::{Error, Parameter, same_bands};
 use crate::math::sampling::split;
@@ -134,6 +134,18 @@ impl Material for Mixture {
 
     fn pdf(&self, outgoing: DVec3, incident: DVec3, hero: usize) -> f64 {
         self.parts.iter().map(|p| p.probability * p.material.pdf(outgoing, incident, hero)).sum()
+    }
+
+    fn nature(&self) -> Nature {
+        self.parts.iter().fold(Nature::default(), |all, part| all.and(part.material.nature()))
+    }
+
+    fn albedo(&self, arriving: DVec3, share: &mut [f64]) -> Option<f64> {
+        let mut bound = Some(0.0);
+        self.sum(share, |material, values| {
+            bound = bound.and_then(|b: f64| Some(b + material.albedo(arriving, values)?));
+        });
+        bound
     }
 
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {

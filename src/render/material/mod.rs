@@ -38,6 +38,29 @@ pub struct Scattered {
     pub split: bool,
 }
 
+/// What a material asks of the model of light beyond a colour for every pair of directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Nature {
+    /// It refracts wavelengths in different directions.
+    pub disperses: bool,
+    /// It changes wavelengths.
+    pub fluoresces: bool,
+    /// Turning it about its normal changes what it scatters.
+    pub anisotropic: bool,
+}
+
+impl Nature {
+    /// That of both together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            disperses: self.disperses || other.disperses,
+            fluoresces: self.fluoresces || other.fluoresces,
+            anisotropic: self.anisotropic || other.anisotropic,
+        }
+    }
+}
+
 /// Which quantity a path carries: radiance scales with n² when it is refracted, flux does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Transport {
@@ -88,6 +111,18 @@ pub trait Material: std::fmt::Debug + Send + Sync {
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
         let _ = (outgoing, incident, components);
         false
+    }
+
+    /// What it asks of the model of light.
+    fn nature(&self) -> Nature {
+        Nature { disperses: self.splits(), ..Nature::default() }
+    }
+
+    /// Writes the share that is scattered, per band, of what arrives from a direction, after [`Material::convert`], Dirac lobes included;
+    /// gives a bound on its error, `None` where the share is not known.
+    fn albedo(&self, arriving: DVec3, share: &mut [f64]) -> Option<f64> {
+        let _ = (arriving, share);
+        None
     }
 
     /// Whether wavelengths go different ways outside of Dirac lobes: a path carries its hero alone from there on.

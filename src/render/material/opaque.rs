@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::{Material, Scattered, Transport};
+use super::{Material, Nature, Scattered, Transport};
 use crate::brdf::Brdf;
 use crate::brdf::fresnel::Components;
 
@@ -75,6 +75,18 @@ impl Material for Opaque {
 
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
         self.upright(incident, outgoing).is_some_and(|(i, _)| self.brdf.polarise(i, components))
+    }
+
+    fn nature(&self) -> Nature {
+        Nature { anisotropic: !self.brdf.is_isotropic(), ..Nature::default() }
+    }
+
+    fn albedo(&self, arriving: DVec3, share: &mut [f64]) -> Option<f64> {
+        if let Some((i, _)) = self.upright(arriving, arriving) {
+            return Some(self.brdf.albedo(i, share));
+        }
+        share.fill(0.0);
+        Some(0.0)
     }
 
     fn has_delta(&self) -> bool {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::{Material, Scattered, Transport};
+use super::{Material, Nature, Scattered, Transport};
 use crate::brdf::fresnel::Components;
 use crate::brdf::parameter::{Error, Parameter, same_bands};
 
@@ -63,6 +63,8 @@ pub struct Picture {
     size: [usize; 2],
     /// One spectrum per channel, on the bands.
     basis: Vec<Vec<f64>>,
+    /// How often it is repeated along u and v.
+    repeat: DVec2,
     /// Rows from the top, pixels from the left, channels.
     coefficients: Vec<f32>,
 }
@@ -83,7 +85,7 @@ impl Picture {
         if coefficients.len() != expected || expected == 0 {
             return Err(Error::Bands { name: "coefficients", found: coefficients.len(), expected: expected.max(1) });
         }
-        let picture = Self { size, basis, coefficients };
+        let picture = Self { size, basis, repeat: DVec2::ONE, coefficients };
         let mut factors = vec![0.0; bands];
         for pixel in 0..size[0] * size[1] {
             factors.fill(0.0);
@@ -93,6 +95,12 @@ impl Picture {
             }
         }
         Ok(picture)
+    }
+
+    /// The same picture, repeated so often along u and v.
+    #[must_use]
+    pub fn repeated(self, repeat: [f64; 2]) -> Self {
+        Self { repeat: DVec2::from_array(repeat), ..self }
     }
 
     fn add(&self, pixel: usize, share: f64, factors: &mut [f64]) {
@@ -107,6 +115,7 @@ impl Picture {
 impl Texture for Picture {
     fn write(&self, uv: DVec2, factors: &mut [f64]) {
         let [width, height] = self.size;
+        let uv = uv * self.repeat;
         // The two pixels whose centres are on both sides, around the edge where need be, and the share of the second.
         let between = |x: f64, n: usize| {
             let place = x.rem_euclid(1.0) * n as f64 - 0.5;
@@ -171,6 +180,14 @@ impl Material for Textured {
 
     fn converts(&self) -> bool {
         true
+    }
+
+    fn nature(&self) -> Nature {
+        self.base.nature()
+    }
+
+    fn albedo(&self, arriving: DVec3, share: &mut [f64]) -> Option<f64> {
+        self.base.albedo(arriving, share)
     }
 
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
