@@ -87,11 +87,11 @@ pub fn text(built: &Built, audit: &Audit) -> String {
         if let Some(l) = lost {
             let _ = writeln!(
                 out,
-                "{}: the solver leaves out {} ± {} ({} % of all light)",
+                "{}: the solver leaves out {} % of the light ({} ± {} in the unit of the reading)",
                 instrument.name,
+                significant(100.0 * l.share(), 3),
                 significant(l.lost.value, 4),
-                significant(l.lost.standard_error, 2),
-                significant(100.0 * l.share(), 3)
+                significant(l.lost.standard_error, 2)
             );
         }
     }

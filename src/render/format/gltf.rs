@@ -123,10 +123,11 @@ fn refused(found: impl Into<String>, expected: &str) -> Error {
 /// Where something else stands than the format asks for; a file without triangles; what `beside` says.
 pub fn read(bytes: &[u8], beside: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Vec<Object>, Error> {
     let (json, binary) = chunks(bytes)?;
-    let document: Document = serde_json::from_slice(json).map_err(|e| Error {
-        place: Place::Line(e.line(), e.column()),
-        found: e.to_string(),
-        expected: "glTF 2.0".to_owned(),
+    let document: Document = serde_json::from_slice(json).map_err(|e| {
+        // Its own place stands before it.
+        let message = e.to_string();
+        let found = message.rsplit_once(" at line ").map_or(message.as_str(), |(found, _)| found).to_owned();
+        Error { place: Place::Line(e.line(), e.column().max(1)), found, expected: "glTF 2.0".to_owned() }
     })?;
     let unknown = |e: &&String| !HARMLESS.iter().any(|start| e.starts_with(start));
     if let Some(extension) = document.extensions_required.iter().find(unknown) {
@@ -505,7 +506,7 @@ mod tests {
             ("\"count\":3,\"type\":\"VEC3\"", "\"count\":300,\"type\":\"VEC3\"", "accessor 0 beyond its buffer"),
             ("\"indices\":3", "\"indices\":0", "accessor 0 of type VEC3"),
             ("\"indices\":3", "\"indices\":9", "no accessor 9"),
-            ("\"byteOffset\":96,", "\"byteOffset\":2,", "in mesh 0; expected one of 0..3"),
+            ("\"byteOffset\":96,", "\"byteOffset\":14,", "in mesh 0; expected one of 0..3"),
             (
                 "\"byteOffset\":36,\"componentType\":5126,\"count\":3",
                 "\"byteOffset\":36,\"componentType\":5126,\"count\":2",
