@@ -1,6 +1,6 @@
 //! Meshes of triangles: their own coordinates, a tree to search them, the surface at a crossing.
 //!
-//! Every triangle has its [`corners`](super::corners) beside those of its neighbours; normals and texture coordinates are kept in `f32`. A tree takes several times its
+//! Every triangle has its `corners` beside those of its neighbours; normals and texture coordinates are kept in `f32`. A tree takes several times its
 //! final size while it is built, so large meshes are first cut into blocks that have trees of their own.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};

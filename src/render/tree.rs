@@ -1,4 +1,4 @@
-//! The search among many boxes: a [`hierarchy`](super::hierarchy) in single precision, made safe for tests in double precision at its
+//! The search among many boxes: a `hierarchy` in single precision, made safe for tests in double precision at its
 //! leaves.
 //!
 //! - The boxes are moved and scaled so that all of them lie in [−1, 1]³, whatever their size and place, and widened by `PAD`, which
