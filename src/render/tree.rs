@@ -175,7 +175,9 @@ mod tests {
                 // From outside and far away, from inside, along an axis.
                 let from = at((DVec3::new(x, y, z) - 0.5) * if n % 3 == 0 { 50.0 } else { 1.0 });
                 let to = at(DVec3::new(a, b, c) - 0.5);
-                let direction = if n % 5 == 0 { DVec3::AXES[n % 3] * 0.7 * scale } else { to - from };
+                // Along an axis, forwards and backwards: with components of 0 and of −0.
+                let sign = if n % 2 == 0 { 0.7 } else { -0.7 };
+                let direction = if n % 5 == 0 { DVec3::AXES[n % 3] * sign * scale } else { to - from };
                 let mut told = vec![false; boxes.len()];
                 tree.closest(from, direction, f64::INFINITY, |i, _| {
                     told[i] = true;
