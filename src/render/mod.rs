@@ -27,6 +27,7 @@
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
 //! | [`estimate`], [`measure`] | readings with their standard errors |
+//! | [`goniophotometer`] | the intensities of all that shines, and its flux |
 
 pub mod accelerate;
 pub mod bands;
@@ -37,6 +38,7 @@ pub mod estimate;
 pub mod film;
 pub mod form_factor;
 pub mod format;
+pub mod goniophotometer;
 pub mod integrator;
 pub mod light;
 pub mod material;

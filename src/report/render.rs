@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use crate::render::build::{Built, Kind};
+use crate::render::goniophotometer::Measured;
 use crate::render::integrator::path::Follow;
 use crate::render::reading::{Points, Reading, Spectral};
 use crate::units::significant;
@@ -53,7 +54,11 @@ pub fn sensor(reading: &Reading) -> Value {
     set("standard_error", reading.figure.standard_error.into());
     set("samples", reading.samples.into());
     if let Some(radiant) = reading.radiant {
-        let unit = if reading.unit == "lx" { "W/m2" } else { "W/m2/sr" };
+        let unit = match reading.unit {
+            "lx" => "W/m2",
+            "lm" => "W",
+            _ => "W/m2/sr",
+        };
         set("radiant", json!({"unit": unit, "value": radiant.value, "standard_error": radiant.standard_error}));
     }
     if let Some((relative, reached)) = reading.target {
@@ -68,6 +73,9 @@ pub fn sensor(reading: &Reading) -> Value {
     }
     if let Some(points) = &reading.points {
         set("grid", grid(points));
+    }
+    if let Some(measured) = &reading.intensities {
+        set("intensity", intensity(measured));
     }
     out.into()
 }
@@ -91,12 +99,38 @@ fn grid(p: &Points) -> Value {
     let values = || p.figures.iter().map(|f| f.value);
     json!({
         "points": p.counts,
-        "size_m": p.size_m,
+        "size_m": p.edges.map(glam::DVec3::length),
         "minimum": values().fold(f64::INFINITY, f64::min),
         "maximum": values().fold(f64::NEG_INFINITY, f64::max),
         "values": rows(|f| f.value),
         "standard_errors": rows(|f| f.standard_error),
     })
+}
+
+/// Row by row: one C-plane each.
+fn intensity(m: &Measured) -> Value {
+    let planes =
+        |values: Vec<f64>| -> Vec<Vec<f64>> { values.chunks(m.gamma_deg.len()).map(<[f64]>::to_vec).collect() };
+    json!({
+        "unit": "cd",
+        "c_deg": m.c_deg,
+        "gamma_deg": m.gamma_deg,
+        "values": planes(m.intensity.iter().map(|f| f.value).collect()),
+        "standard_errors": planes(m.intensity.iter().map(|f| f.standard_error).collect()),
+        "scattered": planes(m.scattered.clone()),
+    })
+}
+
+/// The points of a grid as a table: `x_m,y_m,z_m`, the reading and its standard error, row by row along the first edge.
+#[must_use]
+pub fn grid_csv(points: &Points, quantity: &str, unit: &str) -> String {
+    let mut out = format!("x_m,y_m,z_m,{quantity}_{unit},standard_error_{unit}\n");
+    for (index, figure) in points.figures.iter().enumerate() {
+        let p = points.position(index);
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{},{},{},{},{}", p.x, p.y, p.z, figure.value, figure.standard_error);
+    }
+    out
 }
 
 /// The result of a render, one object of `results`.
@@ -142,6 +176,23 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
                 significant(high, 4),
                 r.unit,
                 significant(low / r.figure.value, 3)
+            );
+        }
+        if let Some(m) = &r.intensities {
+            let (index, peak) = (m.intensity.iter().enumerate())
+                .fold((0, 0.0), |best, (i, f)| if f.value > best.1 { (i, f.value) } else { best });
+            let rows = m.gamma_deg.len();
+            let error = m.intensity.iter().map(|f| f.standard_error).fold(0.0, f64::max);
+            let _ = writeln!(
+                out,
+                "{:width$}  {} × {} directions, peak {} cd at C {}°, γ {}°; largest standard error {} cd",
+                "",
+                m.c_deg.len(),
+                rows,
+                significant(peak, 5),
+                m.c_deg[index / rows],
+                m.gamma_deg[index % rows],
+                significant(error, 2)
             );
         }
         if let Some(s) = &r.spectral {
@@ -190,6 +241,7 @@ pub fn contents(built: &Built) -> Value {
             let (kind, count) = match &i.kind {
                 Kind::Meter(m) => (crate::render::reading::quantity(&m.response).0, 1),
                 Kind::Grid { meters, .. } => (crate::render::reading::quantity(&meters[0].response).0, meters.len()),
+                Kind::Goniophotometer(g) => ("intensity", g.directions()),
                 Kind::Camera(c) => ("picture", c.width() as usize * c.height() as usize),
             };
             json!({"name": i.name, "kind": kind, "points": count})

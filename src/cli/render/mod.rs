@@ -2,6 +2,7 @@
 
 mod files;
 mod pictures;
+mod sheets;
 mod state;
 mod work;
 
@@ -149,6 +150,10 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
             "the scene has a `target`, and a state is kept only for a number of samples; expected one or the other";
         return Err(Failure::Message(message.to_owned()));
     }
+    if state.is_some() && work.built.instruments.iter().any(|i| matches!(i.kind, Kind::Goniophotometer(_))) {
+        let message = "the scene has a goniophotometer, and a state is kept only for meters and pictures; expected a scene without it, or no --checkpoint, --resume and --shard";
+        return Err(Failure::Message(message.to_owned()));
+    }
     let targets = targets(a, &work.built)?;
     let job = Job { share, folder: a.folder.as_deref().unwrap_or(Path::new("")), targets: &targets, talk };
     match work.render(&job, state.as_mut())? {
@@ -182,7 +187,7 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
     let unit = |kind: &Kind| match kind {
         Kind::Meter(m) => Some(reading::quantity(&m.response).1),
         Kind::Grid { meters, .. } => Some(reading::quantity(&meters[0].response).1),
-        Kind::Camera(_) => None,
+        Kind::Camera(_) | Kind::Goniophotometer(_) => None,
     };
     let mut any = false;
     let targets = (built.instruments.iter())
@@ -193,6 +198,7 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
                 None => true,
                 Some("lux" | "lx") => unit == "lx",
                 Some("nits" | "nit" | "cd/m2") => unit == "cd/m2",
+                Some("lm") => unit == "lm",
                 Some(name) => name == i.name,
             };
             any |= meant;
@@ -205,7 +211,7 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
                 built.instruments.iter().filter(|i| unit(&i.kind).is_some()).map(|i| i.name.as_str()).collect();
             let which = t.which.as_deref().unwrap_or("any meter");
             Err(Failure::Message(format!(
-                "--target: no meter is meant by `{which}`; expected lux, nits or one of: {}",
+                "--target: no meter is meant by `{which}`; expected lux, nits, lm or one of: {}",
                 names.join(", ")
             )))
         }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::state::{self, State};
-use super::{files, pictures};
+use super::{files, pictures, sheets};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
@@ -17,6 +17,7 @@ use crate::finding::Finding;
 use crate::render::build::{Built, Kind, build};
 use crate::render::description::{self, Description};
 use crate::render::estimate::REPLICATES;
+use crate::render::goniophotometer::Run;
 use crate::render::measure::{Board, Meter, Target};
 use crate::render::reading::{self, Reading};
 use crate::render::spool::{Header, Share, Task};
@@ -63,6 +64,8 @@ pub(super) struct Job<'a> {
 pub(super) struct Done {
     readings: Vec<Reading>,
     written: Vec<String>,
+    /// What the files written could not carry.
+    findings: Vec<Finding>,
 }
 
 impl Work {
@@ -90,7 +93,7 @@ impl Work {
             let own: &[Meter] = match &instrument.kind {
                 Kind::Meter(meter) => std::slice::from_ref(meter),
                 Kind::Grid { meters, .. } => meters,
-                Kind::Camera(_) => &[],
+                Kind::Camera(_) | Kind::Goniophotometer(_) => &[],
             };
             meters.extend((0_u64..).zip(own).map(|(point, m)| ((number << 32) + point, m.clone())));
         }
@@ -114,12 +117,16 @@ impl Work {
     pub(super) fn render(&self, job: &Job<'_>, mut state: Option<&mut State>) -> Result<Option<Done>, Failure> {
         let render = &self.description.render;
         let per_replicate = render.meter_samples.div_ceil(REPLICATES as u64);
-        let pixels: u64 = (self.built.instruments.iter())
-            .map(|i| if let Kind::Camera(c) = &i.kind { u64::from(c.width()) * u64::from(c.height()) } else { 0 })
+        let others: u64 = (self.built.instruments.iter())
+            .map(|i| match &i.kind {
+                Kind::Camera(c) => u64::from(c.width()) * u64::from(c.height()) * render.samples,
+                Kind::Goniophotometer(_) => render.meter_samples,
+                Kind::Meter(_) | Kind::Grid { .. } => 0,
+            })
             .sum();
         // In units of samples, of meters and pixels alike.
         let meter_work = per_replicate * (REPLICATES * self.meters.len()) as u64;
-        let progress = progress(meter_work + pixels * render.samples, job.talk);
+        let progress = progress(meter_work + others, job.talk);
         let mut board = Board::new(&self.built.scene, &self.built.settings, job.share, self.meters.clone());
         if let Some(state) = state.as_deref_mut() {
             state.restore(&mut board, self.meters.len(), per_replicate)?;
@@ -144,7 +151,8 @@ impl Work {
             reached[n] = Some((relative, met));
         }
         progress.set_position(meter_work);
-        let mut done = Done { readings: Vec::new(), written: Vec::new() };
+        let mut done = Done { readings: Vec::new(), written: Vec::new(), findings: Vec::new() };
+        let place = sheets::Place { folder: job.folder, inputs: &self.read };
         let mut picture = 0;
         for (n, instrument) in self.built.instruments.iter().enumerate() {
             if let Kind::Camera(camera) = &instrument.kind {
@@ -165,6 +173,21 @@ impl Work {
                 let noise = job.render(stored, &progress, &mut done.written)?;
                 picture += 1;
                 done.readings.push(reading::of_picture(instrument, &noise, render.samples));
+            } else if let Kind::Goniophotometer(goniophotometer) = &instrument.kind {
+                let measured = goniophotometer.measure(&Run {
+                    scene: &self.built.scene,
+                    settings: &self.built.settings,
+                    instrument: (n as u64) << 32,
+                    samples: render.meter_samples,
+                    weights: &self.built.quantities.luminous,
+                });
+                progress.inc(render.meter_samples);
+                if let Some(described) = &self.description.sensor[n].goniophotometer {
+                    let described = described.get_ref();
+                    done.findings.extend(place.lamp(described, &instrument.name, &measured, &mut done.written)?);
+                }
+                let (bands, quantities) = (self.built.scene.bands(), &self.built.quantities);
+                done.readings.push(reading::of_goniophotometer(instrument, measured, bands, quantities));
             } else if let Some(r) = reading::of_board(
                 instrument,
                 &board,
@@ -173,6 +196,10 @@ impl Work {
                 &self.built.quantities,
                 reached[n],
             ) {
+                let described = self.description.sensor[n].illuminance.as_ref().and_then(|i| i.get_ref().grid.as_ref());
+                if let (Some(described), Some(points), true) = (described, &r.points, job.share == Share::WHOLE) {
+                    place.grid(described, &r, points, &mut done.written)?;
+                }
                 done.readings.push(r);
             }
         }
@@ -189,7 +216,8 @@ impl Work {
         output: Option<&Path>,
         talk: Talk,
     ) -> Result<(), Failure> {
-        let findings = files::findings(&self.path, &self.built, &done.readings);
+        let mut findings = files::findings(&self.path, &self.built, &done.readings);
+        findings.extend(done.findings);
         Notes::new(&[], talk).print(&findings);
         let seconds = self.begun.elapsed().as_secs_f64();
         let result = report::result(&self.built, &done.readings, &done.written, seconds);

@@ -71,6 +71,10 @@ impl<'a> LightTracer<'a> {
         let Some(light) = self.scene.lights().get(index) else { return };
         let probability = self.lights[index] - if index == 0 { 0.0 } else { self.lights[index - 1] };
         let Some(mut ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
+        // Where nothing shines there are no shares.
+        if probability.is_nan() {
+            return;
+        }
         self.flux.iter_mut().for_each(|f| *f /= probability);
         visitor.emitted(&self.flux);
         let start: f64 = self.flux.iter().sum();
