@@ -27,6 +27,7 @@
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
 //! | [`estimate`], [`measure`] | readings with their standard errors |
+//! | [`gonioreflectometer`] | the BRDF of a sample |
 //! | [`goniophotometer`] | the intensities of all that shines, and its flux |
 
 pub mod accelerate;
@@ -39,6 +40,7 @@ pub mod film;
 pub mod form_factor;
 pub mod format;
 pub mod goniophotometer;
+pub mod gonioreflectometer;
 pub mod integrator;
 pub mod light;
 pub mod material;

@@ -7,6 +7,7 @@ use super::build::{Instrument, Kind, Quantities};
 use super::estimate::{Estimate, Faults, Figure};
 use super::film::Noise;
 use super::goniophotometer::Measured;
+use super::gonioreflectometer;
 use super::measure::{Board, Meter};
 use super::sensor::response::Response;
 use crate::colorimetry::{cct, chromaticity};
@@ -80,6 +81,8 @@ pub struct Reading {
     pub points: Option<Points>,
     /// What a goniophotometer measured.
     pub intensities: Option<Measured>,
+    /// What a gonioreflectometer measured.
+    pub brdf: Option<gonioreflectometer::Measured>,
 }
 
 impl Points {
@@ -120,7 +123,7 @@ fn mean(figures: &[Figure]) -> Figure {
     Figure { value, standard_error: variance.sqrt() / n }
 }
 
-/// The reading of a meter or of a grid, whose meters stand on the board from `first` on; `None` for a camera and a goniophotometer.
+/// The reading of a meter or of a grid, whose meters stand on the board from `first` on; `None` for what is no meter.
 #[must_use]
 pub fn of_board(
     instrument: &Instrument,
@@ -133,7 +136,7 @@ pub fn of_board(
     let meters: &[Meter] = match &instrument.kind {
         Kind::Meter(meter) => std::slice::from_ref(meter),
         Kind::Grid { meters, .. } => meters,
-        Kind::Camera(_) | Kind::Goniophotometer(_) => return None,
+        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => return None,
     };
     let estimates: Vec<Estimate> = (first..first + meters.len()).map(|m| board.estimate(m)).collect();
     let figures: Vec<Figure> = estimates.iter().map(|e| e.figure(&quantities.luminous)).collect();
@@ -159,6 +162,7 @@ pub fn of_board(
         spectral: instrument.spectrum.then(|| spectral(&estimates[0], bands, quantities)),
         points,
         intensities: None,
+        brdf: None,
     })
 }
 
@@ -184,6 +188,34 @@ pub fn of_goniophotometer(
         spectral: instrument.spectrum.then(|| spectral(flux, bands, quantities)),
         points: None,
         intensities: Some(measured),
+        brdf: None,
+    }
+}
+
+/// The luminous reflectance of a sample in equal-energy light from the first direction, with all of its BRDF.
+#[must_use]
+pub fn of_gonioreflectometer(
+    instrument: &Instrument,
+    measured: gonioreflectometer::Measured,
+    quantities: &Quantities,
+) -> Reading {
+    let whole: f64 = quantities.luminous.iter().sum();
+    let weights: Vec<f64> = quantities.luminous.iter().map(|w| w / whole).collect();
+    let mut faults = Faults::default();
+    measured.lobes.iter().for_each(|lobe| faults.append(&lobe.reflectance.faults()));
+    Reading {
+        name: instrument.name.clone(),
+        quantity: "reflectance",
+        unit: "1",
+        figure: measured.lobes[0].reflectance.figure(&weights),
+        radiant: None,
+        samples: measured.lobes.iter().map(|lobe| lobe.reflectance.samples()).sum(),
+        faults,
+        target: None,
+        spectral: None,
+        points: None,
+        intensities: None,
+        brdf: Some(measured),
     }
 }
 
@@ -204,5 +236,6 @@ pub fn of_picture(instrument: &Instrument, noise: &Noise, samples_per_pixel: u64
         spectral: None,
         points: None,
         intensities: None,
+        brdf: None,
     }
 }

@@ -59,6 +59,55 @@ fn a_lamp_is_read_with_its_colour() {
     assert_eq!(out["inputs"][0]["sha256"].as_str().map(str::len), Some(64));
 }
 
+/// In a uniform surround nothing that conserves energy can be told from it, whatever stands beside it: every spot is 1000 cd/m².
+#[test]
+fn a_furnace_hides_whatever_conserves_energy() {
+    let materials = [
+        ("white", "reflectance = 1.0"),
+        ("glass", "dielectric = { medium = \"BK7\" }"),
+        ("ground", "dielectric = { medium = \"BK7\", alpha = 0.3 }"),
+        ("coarse", "dielectric = { index = 1.5, alpha = 1.0 }"),
+        ("pane", "pane = { index = 1.5, transmittance = 1.0 }"),
+        ("fields", "mixture = [{ material = \"white\", share = 0.4 }, { material = \"ground\", share = 0.6 }]"),
+    ];
+    let mut text = String::from("[[light]]\nenvironment = { radiance = \"1000 cd/m2\" }\nspectrum = \"E\"\n");
+    for (number, (name, kind)) in materials.iter().enumerate() {
+        let x = 3 * number;
+        text += &format!(
+            "[[material]]\nname = \"{name}\"\n{kind}\n[[shape]]\nmaterial = \"{name}\"\nsphere = {{ centre = [{x}, 0, 0], radius = \"1 m\" }}\n\
+             [[sensor]]\nname = \"{name}\"\ntarget = \"0.1 %\"\n\
+             luminance = {{ at = [{x}, -4, 0.3], look_at = [{x}, 0, 0.3], acceptance = \"20 deg\" }}\n"
+        );
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = json(photopic().arg("render").arg(scene(&folder, &text)).arg("--json"));
+    let sensors = out["results"][0]["sensors"].as_array().expect("readings");
+    assert_eq!(sensors.len(), materials.len());
+    for sensor in sensors {
+        let (value, error) =
+            (sensor["value"].as_f64().expect("a number"), sensor["standard_error"].as_f64().expect("a number"));
+        assert!(error <= 1.0, "{sensor}");
+        // The surround's own luminance is what its bands sum to: exact, since a luminous amount scales the spectrum.
+        assert!((value - 1000.0).abs() <= 3.0 * error + 1e-9, "{sensor}");
+    }
+}
+
+/// A preview says of itself that it measures nothing, and does not see the board over the meter.
+#[test]
+fn a_preview_says_that_it_is_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let board = "[[shape]]\nrectangle = { corner = [-1, -1, 1], edges = [[2, 0, 0], [0, 2, 0]] }\n";
+    let path = scene(&folder, &format!("{board}{LAMP}"));
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--preview"]));
+    let result = &out["results"][0];
+    assert_eq!(result["model"]["solver"], "preview");
+    assert!((result["sensors"][0]["value"].as_f64().expect("a number") - 250.0).abs() < 1e-9);
+    assert!(out["findings"].as_array().expect("findings").iter().any(|f| f["code"] == "R003"), "{out}");
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "64"]));
+    assert_eq!(out["results"][0]["sensors"][0]["value"].as_f64(), Some(0.0));
+    photopic().arg("render").arg(&path).args(["--preview", "--samples", "9"]).assert().code(2);
+}
+
 /// The flux stated is the flux that `--check` prints.
 #[test]
 fn a_check_says_what_the_scene_holds() {

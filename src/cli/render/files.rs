@@ -13,7 +13,7 @@ use crate::constants::SecondRadiation;
 use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::format::{self, ReadOptions};
-use crate::render::build::{Built, Files};
+use crate::render::build::{Built, Files, Instrument, Kind};
 use crate::render::format as mesh;
 use crate::render::mesh::MeshData;
 use crate::render::reading::Reading;
@@ -103,9 +103,17 @@ impl Files for Scene {
 
 /// What is to be said of a scene's readings beside their figures.
 pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<Finding> {
-    let dark = built.scene.lights().is_empty().then(|| {
+    // A gonioreflectometer brings its own light.
+    let brings_light = |i: &Instrument| matches!(i.kind, Kind::Gonioreflectometer(_));
+    let is_dark = built.scene.lights().is_empty() && !built.instruments.iter().all(brings_light);
+    let dark = is_dark.then(|| {
         let finding = Finding::warning("R002", "nothing shines in the scene: every reading is 0");
         finding.at(Location::default().in_file(path)).hint("a [[light]], or a shape with an emission")
+    });
+    let preview = (!built.settings.limits.shadows).then(|| {
+        let finding =
+            Finding::warning("R003", "a preview, direct light without shadows: no figure of it is a measurement");
+        finding.at(Location::default().in_file(path)).hint("the solver `path` measures")
     });
     let faults = (readings.iter().filter(|r| r.faults.count() > 0)).map(|r| {
         let f = &r.faults;
@@ -119,5 +127,5 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
-    dark.into_iter().chain(faults).collect()
+    dark.into_iter().chain(preview).chain(faults).collect()
 }

@@ -14,7 +14,7 @@ use clap::Args;
 use super::output::{self, Sink};
 use super::{Failure, Talk};
 use crate::render::build::{Built, Kind};
-use crate::render::description;
+use crate::render::description::{self, Solver};
 use crate::render::reading;
 use crate::render::spool::Share;
 use crate::report::render as report;
@@ -29,6 +29,7 @@ A scene is a TOML file of materials, shapes, lights and sensors; docs/scenes.md 
 Examples:
   photopic render data/scenes/office.toml
   photopic render room.toml --check
+  photopic render room.toml --preview                          (a first look, no measurement)
   photopic render room.toml --target '1 %' --json -o readings.json
   photopic render room.toml --samples 1024 --folder pictures
   photopic render room.toml --checkpoint room.state            (run it again after a break)
@@ -43,6 +44,9 @@ pub(super) struct RenderArgs {
     /// Print the JSON schema of scenes.
     #[arg(long, conflicts_with_all = ["check", "scene"])]
     schema: bool,
+    /// A first look: direct light without shadows, one sample of a pixel and 64 of a meter. Its figures are no measurement.
+    #[arg(long, conflicts_with_all = ["samples", "meter_samples", "target", "checkpoint", "resume", "shard"])]
+    preview: bool,
     /// Samples of a pixel, instead of the scene's.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
@@ -128,7 +132,13 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         writeln!(sink, "{:#}", description::schema())?;
         return sink.finish(true);
     };
-    let overrides = Overrides { samples: a.samples, meter_samples: a.meter_samples, seed: a.seed };
+    let preview = |count: u64| a.preview.then_some(count);
+    let overrides = Overrides {
+        solver: a.preview.then_some(Solver::Preview),
+        samples: a.samples.or(preview(1)),
+        meter_samples: a.meter_samples.or(preview(64)),
+        seed: a.seed,
+    };
     let work = Work::new(path, &overrides)?;
     if a.check {
         let result = (report::contents(&work.built), report::contents_text(&work.built));
@@ -150,8 +160,14 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
             "the scene has a `target`, and a state is kept only for a number of samples; expected one or the other";
         return Err(Failure::Message(message.to_owned()));
     }
-    if state.is_some() && work.built.instruments.iter().any(|i| matches!(i.kind, Kind::Goniophotometer(_))) {
-        let message = "the scene has a goniophotometer, and a state is kept only for meters and pictures; expected a scene without it, or no --checkpoint, --resume and --shard";
+    if state.is_some()
+        && work
+            .built
+            .instruments
+            .iter()
+            .any(|i| matches!(i.kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_)))
+    {
+        let message = "the scene has a goniophotometer or a gonioreflectometer, and a state is kept only for meters and pictures; expected a scene without it, or no --checkpoint, --resume and --shard";
         return Err(Failure::Message(message.to_owned()));
     }
     let targets = targets(a, &work.built)?;
@@ -166,8 +182,12 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
     let mut state = State::join(&a.shards)?;
     let header = state.header().clone();
     let task = &header.task;
-    let overrides =
-        Overrides { samples: Some(task.samples), meter_samples: Some(task.meter_samples), seed: Some(task.seed) };
+    let overrides = Overrides {
+        solver: None,
+        samples: Some(task.samples),
+        meter_samples: Some(task.meter_samples),
+        seed: Some(task.seed),
+    };
     let work = Work::new(&task.scene, &overrides)?;
     if work.fingerprint != header.fingerprint {
         let message = format!("{}: the scene or its files have changed since the shards were rendered", task.scene);
@@ -187,12 +207,16 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
     let unit = |kind: &Kind| match kind {
         Kind::Meter(m) => Some(reading::quantity(&m.response).1),
         Kind::Grid { meters, .. } => Some(reading::quantity(&meters[0].response).1),
-        Kind::Camera(_) | Kind::Goniophotometer(_) => None,
+        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => None,
     };
     let mut any = false;
     let targets = (built.instruments.iter())
         .map(|i| {
             let unit = unit(&i.kind)?;
+            // A first look does not wait for the scene's own targets.
+            if a.preview {
+                return None;
+            }
             let Some(t) = &a.target else { return i.target };
             let meant = match t.which.as_deref() {
                 None => true,

@@ -1,4 +1,5 @@
-//! What instruments write beside their readings: the lamp file of a goniophotometer, the light map and the table of a grid.
+//! What instruments write beside their readings: the lamp file of a goniophotometer, the BRDF table of a
+//! gonioreflectometer, the light map and the table of a grid.
 
 use std::path::Path;
 
@@ -7,8 +8,10 @@ use crate::cli::output::write_file;
 use crate::finding::Finding;
 use crate::luminaire::format::{eulumdat, ies};
 use crate::plot::{self, grid::light_map_panel};
-use crate::render::description::sensor::{Goniophotometer, Grid};
+use crate::render::bands::Bands;
+use crate::render::description::sensor::{Goniophotometer, Gonioreflectometer, Grid};
 use crate::render::goniophotometer::Measured;
+use crate::render::gonioreflectometer;
 use crate::render::reading::{Points, Reading};
 use crate::report::render as report;
 use crate::units::significant;
@@ -46,6 +49,18 @@ impl Place<'_> {
         };
         self.write(file, text.value.as_bytes(), written)?;
         Ok(text.findings)
+    }
+
+    /// Writes the BRDF table of a gonioreflectometer.
+    pub(super) fn brdf(
+        &self,
+        described: &Gonioreflectometer,
+        measured: &gonioreflectometer::Measured,
+        bands: &Bands,
+        written: &mut Vec<String>,
+    ) -> Result<(), Failure> {
+        let Some(file) = &described.file else { return Ok(()) };
+        self.write(file, report::brdf_csv(measured, bands).as_bytes(), written)
     }
 
     /// Writes the light map and the table of a grid.

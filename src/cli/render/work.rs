@@ -15,7 +15,7 @@ use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
 use crate::render::build::{Built, Kind, build};
-use crate::render::description::{self, Description};
+use crate::render::description::{self, Description, Solver};
 use crate::render::estimate::REPLICATES;
 use crate::render::goniophotometer::Run;
 use crate::render::measure::{Board, Meter, Target};
@@ -29,6 +29,7 @@ const ROUNDS: u64 = 64;
 
 /// What the command line puts in place of the scene's.
 pub(super) struct Overrides {
+    pub solver: Option<Solver>,
     pub samples: Option<u64>,
     pub meter_samples: Option<u64>,
     pub seed: Option<u64>,
@@ -75,6 +76,7 @@ impl Work {
         let wrong = |e: description::Error| Failure::Message(format!("{path}:{e}"));
         let mut description = Description::parse(&scene.text).map_err(wrong)?;
         let render = &mut description.render;
+        render.solver = overrides.solver.unwrap_or(render.solver);
         render.samples = overrides.samples.unwrap_or(render.samples);
         render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);
         render.seed = overrides.seed.unwrap_or(render.seed);
@@ -93,7 +95,7 @@ impl Work {
             let own: &[Meter] = match &instrument.kind {
                 Kind::Meter(meter) => std::slice::from_ref(meter),
                 Kind::Grid { meters, .. } => meters,
-                Kind::Camera(_) | Kind::Goniophotometer(_) => &[],
+                Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => &[],
             };
             meters.extend((0_u64..).zip(own).map(|(point, m)| ((number << 32) + point, m.clone())));
         }
@@ -121,6 +123,7 @@ impl Work {
             .map(|i| match &i.kind {
                 Kind::Camera(c) => u64::from(c.width()) * u64::from(c.height()) * render.samples,
                 Kind::Goniophotometer(_) => render.meter_samples,
+                Kind::Gonioreflectometer(g) => render.meter_samples * g.incident() as u64,
                 Kind::Meter(_) | Kind::Grid { .. } => 0,
             })
             .sum();
@@ -188,6 +191,14 @@ impl Work {
                 }
                 let (bands, quantities) = (self.built.scene.bands(), &self.built.quantities);
                 done.readings.push(reading::of_goniophotometer(instrument, measured, bands, quantities));
+            } else if let Kind::Gonioreflectometer(gonioreflectometer) = &instrument.kind {
+                let (scene, settings) = (&self.built.scene, &self.built.settings);
+                let measured = gonioreflectometer.measure(scene, settings, (n as u64) << 32, render.meter_samples);
+                progress.inc(render.meter_samples * gonioreflectometer.incident() as u64);
+                if let Some(described) = &self.description.sensor[n].gonioreflectometer {
+                    place.brdf(described.get_ref(), &measured, scene.bands(), &mut done.written)?;
+                }
+                done.readings.push(reading::of_gonioreflectometer(instrument, measured, &self.built.quantities));
             } else if let Some(r) = reading::of_board(
                 instrument,
                 &board,

@@ -13,11 +13,12 @@ use crate::render::description::Error;
 use crate::render::description::light::Light;
 use crate::render::description::quantity::Angle;
 use crate::render::description::sensor::{
-    Camera as DescribedCamera, Goniophotometer as DescribedGoniophotometer, Grid, Illuminance, Projection as Layout,
-    Sensor,
+    Camera as DescribedCamera, Goniophotometer as DescribedGoniophotometer,
+    Gonioreflectometer as DescribedGonioreflectometer, Grid, Illuminance, Projection as Layout, Sensor,
 };
 use crate::render::description::surface::Shape;
 use crate::render::goniophotometer::Goniophotometer;
+use crate::render::gonioreflectometer::{Gonioreflectometer, Spot};
 use crate::render::measure::{Meter, Place};
 use crate::render::ray::SurfacePoint;
 use crate::render::scene::Scene;
@@ -80,6 +81,8 @@ pub enum Kind {
     },
     /// A goniophotometer.
     Goniophotometer(Goniophotometer),
+    /// A gonioreflectometer.
+    Gonioreflectometer(Gonioreflectometer),
     /// A camera.
     Camera(Camera),
 }
@@ -92,6 +95,9 @@ const FISHEYE_DEG: f64 = 180.0;
 /// Steps of a goniophotometer that states none, degrees.
 const C_STEP_DEG: f64 = 15.0;
 const GAMMA_STEP_DEG: f64 = 5.0;
+/// Steps of a gonioreflectometer that states none, degrees.
+const THETA_STEP_DEG: f64 = 5.0;
+const PHI_STEP_DEG: f64 = 10.0;
 /// Most points of a grid.
 const MOST_POINTS: u64 = 100_000;
 
@@ -140,13 +146,16 @@ impl Builder<'_> {
             self.in_bounds(&g.span())?;
             kinds.push(Kind::Goniophotometer(self.goniophotometer(g.get_ref(), &g.span())?));
         }
+        if let Some(g) = &sensor.gonioreflectometer {
+            kinds.push(Kind::Gonioreflectometer(self.gonioreflectometer(g.get_ref(), &g.span())?));
+        }
         if let Some(c) = &sensor.camera {
             kinds.push(Kind::Camera(self.camera(c.get_ref(), &c.span())?));
         }
         let mut kinds = kinds.into_iter();
         let (Some(kind), None) = (kinds.next(), kinds.next()) else {
             let message = format!(
-                "sensor `{}` has not one kind; expected one of illuminance, luminance, cylindrical, hemispherical, spherical, integrating_sphere, goniophotometer, camera",
+                "sensor `{}` has not one kind; expected one of illuminance, luminance, cylindrical, hemispherical, spherical, integrating_sphere, goniophotometer, gonioreflectometer, camera",
                 sensor.name.get_ref()
             );
             return Err(self.wrong(&sensor.name.span(), message));
@@ -268,6 +277,25 @@ impl Builder<'_> {
             degrees(g.gamma_step, GAMMA_STEP_DEG),
         )
         .map_err(|e| self.wrong(span, e))
+    }
+
+    fn gonioreflectometer(
+        &self,
+        g: &DescribedGonioreflectometer,
+        span: &Range<usize>,
+    ) -> Result<Gonioreflectometer, Error> {
+        let degrees = |a: &Angle| a.0.to_degrees();
+        let azimuths = g.phi_i.as_ref().map_or(vec![0.0], |all| all.iter().map(degrees).collect());
+        let incident = g.theta_i.iter().flat_map(|theta| azimuths.iter().map(|phi| [degrees(theta), *phi])).collect();
+        let spot = Spot {
+            centre: DVec3::from_array(g.at),
+            normal: g.normal.map_or(DVec3::Z, DVec3::from_array),
+            tangent: g.tangent.map_or(DVec3::X, DVec3::from_array),
+            radius: g.radius.0,
+        };
+        let theta_step = g.theta_step.as_ref().map_or(THETA_STEP_DEG, degrees);
+        let phi_step = g.phi_step.as_ref().map_or(PHI_STEP_DEG, degrees);
+        Gonioreflectometer::new(&spot, incident, theta_step, phi_step).map_err(|e| self.wrong(span, e))
     }
 
     fn camera(&self, c: &DescribedCamera, span: &Range<usize>) -> Result<Camera, Error> {

@@ -108,9 +108,10 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let follow = match render.solver {
         Solver::Path => Follow::All,
         Solver::Whitted => Follow::Specular,
-        Solver::Direct => Follow::Nothing,
+        Solver::Direct | Solver::Preview => Follow::Nothing,
     };
-    let limits = Limits { follow, max_edges: render.max_edges, ..Limits::default() };
+    let shadows = render.solver != Solver::Preview;
+    let limits = Limits { follow, max_edges: render.max_edges, shadows, ..Limits::default() };
     let settings = Settings::new(render.seed, limits, scene.bands().len());
     Ok(Built { scene, instruments, settings, quantities, wavelength_error, light_names })
 }

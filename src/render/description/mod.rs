@@ -103,6 +103,8 @@ pub enum Solver {
     Whitted,
     /// Direct light.
     Direct,
+    /// Direct light without shadows: a first look, and no measurement.
+    Preview,
 }
 
 /// What is wrong with a scene, and where.

@@ -48,6 +48,10 @@ pub struct Sensor {
     #[serde(default)]
     #[schemars(with = "Option<Goniophotometer>")]
     pub goniophotometer: Option<Spanned<Goniophotometer>>,
+    /// The BRDF of a sample.
+    #[serde(default)]
+    #[schemars(with = "Option<Gonioreflectometer>")]
+    pub gonioreflectometer: Option<Spanned<Gonioreflectometer>>,
     /// A picture.
     #[serde(default)]
     #[schemars(with = "Option<Camera>")]
@@ -119,6 +123,36 @@ pub struct Goniophotometer {
     #[serde(default)]
     pub gamma_step: Option<Angle>,
     /// Lamp file to write: LM-63 (.ies) or EULUMDAT (.ldt).
+    #[serde(default)]
+    pub file: Option<String>,
+}
+
+/// A gonioreflectometer: a beam on a round spot of a sample, and detectors over it.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gonioreflectometer {
+    /// The middle of the spot, m.
+    pub at: Vector,
+    /// The way that the sample faces; upwards without it.
+    #[serde(default)]
+    pub normal: Option<Vector>,
+    /// The way of φ = 0; +x without it.
+    #[serde(default)]
+    pub tangent: Option<Vector>,
+    /// Radius of the spot.
+    pub radius: Length,
+    /// Angles of incidence.
+    pub theta_i: Vec<Angle>,
+    /// Azimuths of incidence, each with every angle; 0 without them.
+    #[serde(default)]
+    pub phi_i: Option<Vec<Angle>>,
+    /// Between angles of reflection; 5° without it.
+    #[serde(default)]
+    pub theta_step: Option<Angle>,
+    /// Between azimuths of reflection; 10° without it.
+    #[serde(default)]
+    pub phi_step: Option<Angle>,
+    /// BRDF table to write (CSV).
     #[serde(default)]
     pub file: Option<String>,
 }
