@@ -62,16 +62,18 @@ fn a_lamp_is_read_with_its_colour() {
 /// In a uniform surround nothing that conserves energy can be told from it, whatever stands beside it: every spot is 1000 cd/m².
 #[test]
 fn a_furnace_hides_whatever_conserves_energy() {
+    // Ground glass conserves energy to 5e-4, the accuracy of its table, at each of the some four crossings of a path through a ball.
     let materials = [
-        ("white", "reflectance = 1.0"),
-        ("glass", "dielectric = { medium = \"BK7\" }"),
-        ("ground", "dielectric = { medium = \"BK7\", alpha = 0.3 }"),
-        ("coarse", "dielectric = { index = 1.5, alpha = 1.0 }"),
-        ("pane", "pane = { index = 1.5, transmittance = 1.0 }"),
-        ("fields", "mixture = [{ material = \"white\", share = 0.4 }, { material = \"ground\", share = 0.6 }]"),
+        ("white", "reflectance = 1.0", 0.0),
+        ("glass", "dielectric = { index = 1.5 }", 0.0),
+        ("ground", "dielectric = { index = 1.5, alpha = 0.3 }", 2e-3),
+        ("coarse", "dielectric = { index = 1.5, alpha = 1.0 }", 2e-3),
+        ("pane", "pane = { index = 1.5, transmittance = 1.0 }", 0.0),
+        ("fields", "mixture = [{ material = \"white\", share = 0.4 }, { material = \"ground\", share = 0.6 }]", 2e-3),
     ];
-    let mut text = String::from("[[light]]\nenvironment = { radiance = \"1000 cd/m2\" }\nspectrum = \"E\"\n");
-    for (number, (name, kind)) in materials.iter().enumerate() {
+    let mut text =
+        String::from("[render]\nwavelength_step_nm = 20\n[[light]]\nenvironment = { radiance = \"1000 cd/m2\" }\n");
+    for (number, (name, kind, _)) in materials.iter().enumerate() {
         let x = 3 * number;
         text += &format!(
             "[[material]]\nname = \"{name}\"\n{kind}\n[[shape]]\nmaterial = \"{name}\"\nsphere = {{ centre = [{x}, 0, 0], radius = \"1 m\" }}\n\
@@ -83,12 +85,10 @@ fn a_furnace_hides_whatever_conserves_energy() {
     let out = json(photopic().arg("render").arg(scene(&folder, &text)).arg("--json"));
     let sensors = out["results"][0]["sensors"].as_array().expect("readings");
     assert_eq!(sensors.len(), materials.len());
-    for sensor in sensors {
-        let (value, error) =
-            (sensor["value"].as_f64().expect("a number"), sensor["standard_error"].as_f64().expect("a number"));
-        assert!(error <= 1.0, "{sensor}");
-        // The surround's own luminance is what its bands sum to: exact, since a luminous amount scales the spectrum.
-        assert!((value - 1000.0).abs() <= 3.0 * error + 1e-9, "{sensor}");
+    for (sensor, (_, _, accuracy)) in sensors.iter().zip(materials) {
+        let number = |key: &str| sensor[key].as_f64().expect("a number");
+        let (value, error) = (number("value"), number("standard_error"));
+        assert!(error <= 1.0 && (value - 1000.0).abs() <= 3.0 * error + 1000.0 * accuracy + 1e-9, "{sensor}");
     }
 }
 

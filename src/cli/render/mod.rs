@@ -144,37 +144,40 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         let result = (report::contents(&work.built), report::contents_text(&work.built));
         return work.print("render", result, a.json, a.output.as_deref(), Vec::new());
     }
+    let keeps = a.checkpoint.is_some() || a.resume.is_some() || a.shard.is_some();
+    if let Some(reason) = keeps.then(|| stateless(&work.built)).flatten() {
+        return Err(Failure::Message(reason.to_owned()));
+    }
     let place = a.checkpoint.as_deref().or(a.resume.as_deref()).or(a.output.as_deref().filter(|_| a.shard.is_some()));
     let share = a.shard.unwrap_or(Share::WHOLE);
-    let mut state = match place {
-        Some(file) if a.checkpoint.is_some() || a.resume.is_some() || a.shard.is_some() => {
+    let mut state = match place.filter(|_| keeps) {
+        Some(file) => {
             if work.read.iter().any(|input| output::same_file(Path::new(input), file)) {
                 return Err(Failure::Message(output::overwrites(file)));
             }
             Some(State::open(file, &work.header(share), a.resume.is_some())?)
         }
-        _ => None,
+        None => None,
     };
-    if state.is_some() && work.built.instruments.iter().any(|i| i.target.is_some()) {
-        let message =
-            "the scene has a `target`, and a state is kept only for a number of samples; expected one or the other";
-        return Err(Failure::Message(message.to_owned()));
-    }
-    if state.is_some()
-        && work
-            .built
-            .instruments
-            .iter()
-            .any(|i| matches!(i.kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_)))
-    {
-        let message = "the scene has a goniophotometer or a gonioreflectometer, and a state is kept only for meters and pictures; expected a scene without it, or no --checkpoint, --resume and --shard";
-        return Err(Failure::Message(message.to_owned()));
-    }
     let targets = targets(a, &work.built)?;
     let job = Job { share, folder: a.folder.as_deref().unwrap_or(Path::new("")), targets: &targets, talk };
     match work.render(&job, state.as_mut())? {
         None => Ok(()),
         Some(done) => work.report("render", done, a.json, a.output.as_deref(), talk),
+    }
+}
+
+/// Why no state can be kept of a scene.
+fn stateless(built: &Built) -> Option<&'static str> {
+    let around = |kind: &Kind| matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
+    if built.instruments.iter().any(|i| i.target.is_some()) {
+        Some("the scene has a `target`, and a state is kept only for a number of samples; expected one or the other")
+    } else if built.instruments.iter().any(|i| around(&i.kind)) {
+        Some(
+            "the scene has a goniophotometer or a gonioreflectometer, and a state is kept only for meters and pictures; expected a scene without it, or no --checkpoint, --resume and --shard",
+        )
+    } else {
+        None
     }
 }
 

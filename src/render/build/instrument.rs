@@ -163,6 +163,15 @@ impl Builder<'_> {
         if sensor.target.is_some_and(|t| t.0.is_nan() || t.0 <= 0.0) {
             return Err(self.wrong(&sensor.name.span(), "a `target` that is not above 0"));
         }
+        let fixed = matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
+        if fixed && sensor.target.is_some() {
+            let message = "a `target` of an instrument that takes a fixed number of packets; expected `meter_samples`";
+            return Err(self.wrong(&sensor.name.span(), message));
+        }
+        if matches!(kind, Kind::Gonioreflectometer(_)) && sensor.spectrum {
+            let message = "`spectrum` of a gonioreflectometer, whose table has every wavelength; expected none";
+            return Err(self.wrong(&sensor.name.span(), message));
+        }
         let target = sensor.target.map(|t| t.0);
         Ok(Instrument { name: sensor.name.get_ref().clone(), spectrum: sensor.spectrum, target, kind })
     }
