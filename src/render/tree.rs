@@ -141,7 +141,8 @@ impl Tree {
         let per_parameter = length / STEP;
         // Back by PAD, so that boxes about the origin lie ahead.
         let start = o + d * (enter - PAD / length);
-        let unit = (d * (STEP / length)).as_vec3a();
+        // The crate goes by the sign of the direction in some places and of its inverse in others: no −0, which is both.
+        let unit = (d * (STEP / length)).as_vec3a() + Vec3A::ZERO;
         let invert = |x: f32| if x.abs() < 1.0 / STEEPEST { STEEPEST.copysign(x) } else { 1.0 / x };
         let ray = Traversed {
             origin: start.as_vec3a(),

@@ -93,6 +93,13 @@ goniophotometer = {{ c_step = "{c_step} deg", gamma_step = "{gamma_step} deg", f
                 let ((sc, cc), (s, k)) = (c.to_radians().sin_cos(), gamma.to_radians().sin_cos());
                 let [x, y, z] = undone(turn, [s * cc, s * sc, -k]);
                 let own = (y.atan2(x).to_degrees(), x.hypot(y).atan2(-z).to_degrees());
+                // Where the planes of a file do not agree about a pole, it has no one value there.
+                let is_pole = own.1 < 1e-4 || own.1 > 180.0 - 1e-4;
+                let of = |plane: &f64| before.distribution.at(*plane, own.1);
+                let planes = before.distribution.horizontal_deg();
+                if is_pole && planes.iter().any(|p| (of(p) - of(&planes[0])).abs() > allowed) {
+                    continue;
+                }
                 let (expected, got) = (before.distribution.at(own.0, own.1), after.at(c, gamma));
                 let name = path.display();
                 assert!(
