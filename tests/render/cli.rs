@@ -71,7 +71,9 @@ fn a_furnace_hides_whatever_conserves_energy() {
         ("pane", "pane = { index = 1.5, transmittance = 1.0 }", 0.0),
         ("fields", "mixture = [{ material = \"white\", share = 0.4 }, { material = \"ground\", share = 0.6 }]", 2e-3),
     ];
-    let mut text = String::from("[[light]]\nenvironment = { radiance = \"1000 cd/m2\" }\nspectrum = \"line:555nm\"\n");
+    let mut text = String::from(
+        "[render]\nmeter_samples = 2097152\n[[light]]\nenvironment = { radiance = \"1000 cd/m2\" }\nspectrum = \"line:555nm\"\n",
+    );
     for (number, (name, kind, _)) in materials.iter().enumerate() {
         let x = 3 * number;
         text += &format!(
