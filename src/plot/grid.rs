@@ -1,4 +1,4 @@
-//! From illuminance on a plane to its isolux diagram.
+//! From illuminance on a plane, computed or rendered, to its isolux diagram.
 
 use glam::DVec3;
 
@@ -7,6 +7,7 @@ use crate::luminaire::grid::{self, Illuminance, Placed, Settings};
 use crate::luminaire::placement::{Orientation, Placement};
 use crate::luminaire::{Body, Kind, Luminaire, Shape};
 use crate::math::contour::contours;
+use crate::render::reading::Points;
 use crate::units::significant;
 
 /// Unit of the values of a kind of luminaire.
@@ -76,6 +77,42 @@ pub fn isolux_panel(
         lines,
         luminaires,
         filled,
+    }
+}
+
+/// The light map of a grid of meters, as they read, with isolux lines; its edges are at right angles.
+#[must_use]
+pub fn light_map_panel(title: &str, points: &Points, unit: &str, figures: &str) -> IsoluxPanel {
+    let [m, n] = points.counts;
+    let lengths = points.edges.map(DVec3::length);
+    let axes = [points.edges[0] / lengths[0], points.edges[1] / lengths[1]];
+    let origin = axes.map(|axis| along(axis, points.corner));
+    let places = |count: usize, side: usize| -> Vec<f64> {
+        #[expect(clippy::cast_precision_loss, reason = "numbers of points")]
+        let at = |i: usize| origin[side] + lengths[side] * (i as f64 + 0.5) / count as f64;
+        (0..count).map(at).collect()
+    };
+    let (columns_m, rows_m) = (places(m, 0), places(n, 1));
+    let values: Vec<f64> = points.figures.iter().map(|f| f.value).collect();
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let lines = (levels(low, high).into_iter())
+        .flat_map(|level| {
+            let lines = contours(&columns_m, &rows_m, &values, level);
+            lines.into_iter().map(move |points| IsoluxLine { level, points })
+        })
+        .collect();
+    IsoluxPanel {
+        title: title.to_owned(),
+        figures: figures.to_owned(),
+        axes: [axis_name(axes[0], "first edge"), axis_name(axes[1], "second edge")],
+        extent_m: [(origin[0], origin[0] + lengths[0]), (origin[1], origin[1] + lengths[1])],
+        columns_m,
+        rows_m,
+        values,
+        unit: unit.to_owned(),
+        lines,
+        luminaires: Vec::new(),
+        filled: true,
     }
 }
 

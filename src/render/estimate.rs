@@ -122,10 +122,14 @@ impl Replicate {
     }
 
     pub(super) fn mean(&self, weights: &[f64]) -> f64 {
-        let good = self.samples - self.faults.count();
+        self.sums.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>() / self.good()
+    }
+
+    /// Samples that count, at least 1.
+    fn good(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a number of samples")]
-        let count = good.max(1) as f64;
-        self.sums.iter().zip(weights).map(|(s, w)| s * w).sum::<f64>() / count
+        let good = (self.samples - self.faults.count()).max(1) as f64;
+        good
     }
 }
 
@@ -139,27 +143,14 @@ impl Estimate {
     /// Σ_b w_b · reading_b with its standard error.
     #[must_use]
     pub fn figure(&self, weights: &[f64]) -> Figure {
-        let means: Vec<f64> = self.replicates.iter().map(|r| r.mean(weights)).collect();
-        #[expect(clippy::cast_precision_loss, reason = "a number of replicates")]
-        let n = means.len() as f64;
-        let value = means.iter().sum::<f64>() / n;
-        let scatter = means.iter().map(|m| (m - value) * (m - value)).sum::<f64>();
-        Figure { value, standard_error: (scatter / (n * (n - 1.0))).sqrt() }
+        spread(self.replicates.iter().map(|r| r.mean(weights)))
     }
 
     /// The reading per band, each with its standard error.
     #[must_use]
     pub fn bands(&self) -> Vec<Figure> {
         let bands = self.replicates[0].sums.len();
-        let mut weights = vec![0.0; bands];
-        (0..bands)
-            .map(|band| {
-                weights[band] = 1.0;
-                let figure = self.figure(&weights);
-                weights[band] = 0.0;
-                figure
-            })
-            .collect()
+        (0..bands).map(|band| spread(self.replicates.iter().map(|r| r.sums[band] / r.good()))).collect()
     }
 
     /// Samples of all replicates.
@@ -175,6 +166,15 @@ impl Estimate {
         self.replicates.iter().for_each(|r| all.append(&r.faults));
         all
     }
+}
+
+/// The mean of independent means, with its standard error.
+fn spread(means: impl Iterator<Item = f64> + Clone) -> Figure {
+    #[expect(clippy::cast_precision_loss, reason = "a number of replicates")]
+    let n = means.clone().count() as f64;
+    let value = means.clone().sum::<f64>() / n;
+    let scatter = means.map(|m| (m - value) * (m - value)).sum::<f64>();
+    Figure { value, standard_error: (scatter / (n * (n - 1.0))).sqrt() }
 }
 
 /// The stream of a replicate of the instrument `instrument`: distinct for distinct pairs.

@@ -1,10 +1,12 @@
-//! Readings of meters by path tracing: as many samples as asked for, or until they are sure enough.
+//! Readings of meters by path tracing, of flux by light tracing: as many samples as asked for, or until they are sure enough.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::estimate::{Estimate, REPLICATES, Replicate, stream};
+use super::goniophotometer::Leaving;
+use super::integrator::light::LightTracer;
 use super::integrator::path::{Limits, PathTracer};
 use super::ray::SurfacePoint;
 use super::sampler::Sampler;
@@ -20,6 +22,8 @@ pub enum Place {
     Point(SurfacePoint),
     /// All over a shape, on its outside: the mean over its area.
     Area(Arc<dyn Shape>),
+    /// Around everything, whose lights are all in bounds: what leaves the scene, with [`Response::Flux`].
+    Around,
 }
 
 /// A meter.
@@ -88,8 +92,15 @@ impl<'a> Board<'a> {
     pub fn sample_until(&mut self, samples: u64) {
         let (scene, settings, share, meters) = (self.scene, self.settings, self.share, &self.meters);
         self.replicates.par_iter_mut().enumerate().filter(|(i, _)| share.has(i % REPLICATES)).for_each_init(
-            || PathTracer::new(scene, settings.limits, &settings.heroes),
-            |tracer, (index, replicate)| {
+            || {
+                let leaving = Leaving::new(scene.bands().len());
+                (
+                    PathTracer::new(scene, settings.limits, &settings.heroes),
+                    LightTracer::new(scene, &settings.heroes),
+                    leaving,
+                )
+            },
+            |(tracer, packets, leaving), (index, replicate)| {
                 let (instrument, meter) = &meters[index / REPLICATES];
                 let stream = stream(*instrument, index % REPLICATES);
                 let mut sampler = Sampler::new(settings.seed, stream, 0);
@@ -100,6 +111,12 @@ impl<'a> Board<'a> {
                         Place::Area(shape) => {
                             let [u, v, w, _] = sampler.four();
                             shape.sample_area([u, v, w])
+                        }
+                        Place::Around => {
+                            leaving.clear();
+                            packets.packet(&mut sampler, leaving);
+                            replicate.add(stream, leaving.flux());
+                            continue;
                         }
                     };
                     replicate.add(stream, tracer.reading(&point, &meter.response, &mut sampler));

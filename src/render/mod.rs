@@ -28,6 +28,8 @@
 //! | [`integrator`] | solvers |
 //! | [`estimate`], [`measure`] | readings with their standard errors |
 //! | [`audit`] | where the energy goes, and what readings lose |
+//! | [`gonioreflectometer`] | the BRDF of a sample |
+//! | [`goniophotometer`] | the intensities of all that shines, and its flux |
 
 pub mod accelerate;
 pub mod audit;
@@ -40,6 +42,8 @@ pub mod estimate;
 pub mod film;
 pub mod form_factor;
 pub mod format;
+pub mod goniophotometer;
+pub mod gonioreflectometer;
 mod hierarchy;
 pub mod integrator;
 pub mod light;

@@ -1,9 +1,13 @@
 //! What the instruments of a render read: figures with their standard errors, spectra, and the colour of the light.
 
+use glam::DVec3;
+
 use super::bands::Bands;
 use super::build::{Instrument, Kind, Quantities};
 use super::estimate::{Estimate, Faults, Figure};
 use super::film::Noise;
+use super::goniophotometer::Measured;
+use super::gonioreflectometer;
 use super::measure::{Board, Meter};
 use super::sensor::response::Response;
 use crate::colorimetry::{cct, chromaticity};
@@ -17,6 +21,7 @@ pub fn quantity(response: &Response) -> (&'static str, &'static str) {
         Response::Hemispherical => ("hemispherical illuminance", "lx"),
         Response::Cylindrical => ("cylindrical illuminance", "lx"),
         Response::Spherical => ("spherical illuminance", "lx"),
+        Response::Flux => ("luminous flux", "lm"),
         Response::Cone { .. } => ("luminance", "cd/m2"),
     }
 }
@@ -43,8 +48,10 @@ pub struct Spectral {
 pub struct Points {
     /// Along the first and the second edge.
     pub counts: [usize; 2],
-    /// Lengths of the edges, m.
-    pub size_m: [f64; 2],
+    /// The corner from which the edges go, m.
+    pub corner: DVec3,
+    /// The edges, m.
+    pub edges: [DVec3; 2],
     /// Row by row along the first edge.
     pub figures: Vec<Figure>,
 }
@@ -72,6 +79,21 @@ pub struct Reading {
     pub spectral: Option<Spectral>,
     /// The points of a grid.
     pub points: Option<Points>,
+    /// What a goniophotometer measured.
+    pub intensities: Option<Measured>,
+    /// What a gonioreflectometer measured.
+    pub brdf: Option<gonioreflectometer::Measured>,
+}
+
+impl Points {
+    /// The middle of the cell `index`, m.
+    #[must_use]
+    pub fn position(&self, index: usize) -> DVec3 {
+        let [m, n] = self.counts;
+        #[expect(clippy::cast_precision_loss, reason = "numbers of points")]
+        let along = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
+        self.corner + along(index % m, m) * self.edges[0] + along(index / m, n) * self.edges[1]
+    }
 }
 
 /// The spectrum and the colour of a reading.
@@ -101,7 +123,7 @@ fn mean(figures: &[Figure]) -> Figure {
     Figure { value, standard_error: variance.sqrt() / n }
 }
 
-/// The reading of a meter or of a grid, whose meters stand on the board from `first` on; `None` for a camera.
+/// The reading of a meter or of a grid, whose meters stand on the board from `first` on; `None` for what is no meter.
 #[must_use]
 pub fn of_board(
     instrument: &Instrument,
@@ -114,7 +136,7 @@ pub fn of_board(
     let meters: &[Meter] = match &instrument.kind {
         Kind::Meter(meter) => std::slice::from_ref(meter),
         Kind::Grid { meters, .. } => meters,
-        Kind::Camera(_) => return None,
+        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => return None,
     };
     let estimates: Vec<Estimate> = (first..first + meters.len()).map(|m| board.estimate(m)).collect();
     let figures: Vec<Figure> = estimates.iter().map(|e| e.figure(&quantities.luminous)).collect();
@@ -123,8 +145,8 @@ pub fn of_board(
     estimates.iter().for_each(|e| faults.append(&e.faults()));
     let (quantity, unit) = quantity(&meters[0].response);
     let points = match &instrument.kind {
-        Kind::Grid { counts, size_m, .. } => {
-            Some(Points { counts: *counts, size_m: *size_m, figures: figures.clone() })
+        Kind::Grid { counts, corner, edges, .. } => {
+            Some(Points { counts: *counts, corner: *corner, edges: *edges, figures: figures.clone() })
         }
         _ => None,
     };
@@ -139,7 +161,62 @@ pub fn of_board(
         target,
         spectral: instrument.spectrum.then(|| spectral(&estimates[0], bands, quantities)),
         points,
+        intensities: None,
+        brdf: None,
     })
+}
+
+/// The flux that a goniophotometer measured, with its intensities.
+#[must_use]
+pub fn of_goniophotometer(
+    instrument: &Instrument,
+    measured: Measured,
+    bands: &Bands,
+    quantities: &Quantities,
+) -> Reading {
+    let (quantity, unit) = quantity(&Response::Flux);
+    let flux = &measured.flux;
+    Reading {
+        name: instrument.name.clone(),
+        quantity,
+        unit,
+        figure: flux.figure(&quantities.luminous),
+        radiant: Some(flux.figure(&quantities.radiant)),
+        samples: flux.samples(),
+        faults: flux.faults(),
+        target: None,
+        spectral: instrument.spectrum.then(|| spectral(flux, bands, quantities)),
+        points: None,
+        intensities: Some(measured),
+        brdf: None,
+    }
+}
+
+/// The luminous reflectance of a sample in equal-energy light from the first direction, with all of its BRDF.
+#[must_use]
+pub fn of_gonioreflectometer(
+    instrument: &Instrument,
+    measured: gonioreflectometer::Measured,
+    quantities: &Quantities,
+) -> Reading {
+    let whole: f64 = quantities.luminous.iter().sum();
+    let weights: Vec<f64> = quantities.luminous.iter().map(|w| w / whole).collect();
+    let mut faults = Faults::default();
+    measured.lobes.iter().for_each(|lobe| faults.append(&lobe.reflectance.faults()));
+    Reading {
+        name: instrument.name.clone(),
+        quantity: "reflectance",
+        unit: "1",
+        figure: measured.lobes[0].reflectance.figure(&weights),
+        radiant: None,
+        samples: measured.lobes.iter().map(|lobe| lobe.reflectance.samples()).sum(),
+        faults,
+        target: None,
+        spectral: None,
+        points: None,
+        intensities: None,
+        brdf: Some(measured),
+    }
 }
 
 /// The mean luminance of a picture.
@@ -158,5 +235,7 @@ pub fn of_picture(instrument: &Instrument, noise: &Noise, samples_per_pixel: u64
         target: None,
         spectral: None,
         points: None,
+        intensities: None,
+        brdf: None,
     }
 }

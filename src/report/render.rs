@@ -4,7 +4,11 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
+use crate::render::bands::Bands;
 use crate::render::build::{Built, Kind};
+use crate::render::estimate::Figure;
+use crate::render::goniophotometer::Measured;
+use crate::render::gonioreflectometer;
 use crate::render::integrator::path::Follow;
 use crate::render::reading::{Points, Reading, Spectral};
 use crate::units::significant;
@@ -13,16 +17,21 @@ use crate::units::significant;
 #[must_use]
 pub fn model(built: &Built) -> Value {
     let bands = built.scene.bands();
-    let (solver, light) = match built.settings.limits.follow {
+    let limits = &built.settings.limits;
+    let (solver, light) = match limits.follow {
+        _ if !limits.shadows => ("preview", "direct light without shadows; no measurement"),
         Follow::All => ("path", "all light, direct and reflected"),
         Follow::Specular => ("whitted", "direct light and its reflections in mirrors and glass"),
         Follow::Nothing => ("direct", "direct light alone"),
     };
     let mut left_out = Vec::new();
-    if built.settings.limits.follow != Follow::All {
+    if !limits.shadows {
+        left_out.push("shadows");
+    }
+    if limits.follow != Follow::All {
         left_out.push("light that was reflected diffusely before");
     }
-    if built.settings.limits.max_edges.is_some() {
+    if limits.max_edges.is_some() {
         left_out.push("paths longer than max_edges");
     }
     if !built.analysis.dark_lights.is_empty() {
@@ -67,7 +76,7 @@ pub fn model(built: &Built) -> Value {
             "relative_error": built.wavelength_error,
             "paths": paths,
         },
-        "max_edges": built.settings.limits.max_edges,
+        "max_edges": limits.max_edges,
         "left_out": left_out,
     })
 }
@@ -86,7 +95,11 @@ pub fn sensor(reading: &Reading) -> Value {
     set("standard_error", reading.figure.standard_error.into());
     set("samples", reading.samples.into());
     if let Some(radiant) = reading.radiant {
-        let unit = if reading.unit == "lx" { "W/m2" } else { "W/m2/sr" };
+        let unit = match reading.unit {
+            "lx" => "W/m2",
+            "lm" => "W",
+            _ => "W/m2/sr",
+        };
         set("radiant", json!({"unit": unit, "value": radiant.value, "standard_error": radiant.standard_error}));
     }
     if let Some((relative, reached)) = reading.target {
@@ -101,6 +114,25 @@ pub fn sensor(reading: &Reading) -> Value {
     }
     if let Some(points) = &reading.points {
         set("grid", grid(points));
+    }
+    if let Some(measured) = &reading.intensities {
+        set("intensity", intensity(measured));
+    }
+    if let Some(measured) = &reading.brdf {
+        let each = |of: &dyn Fn(&gonioreflectometer::Lobe) -> Value| measured.lobes.iter().map(of).collect::<Vec<_>>();
+        let bands =
+            |of: fn(&Figure) -> f64| each(&|lobe| lobe.reflectance.bands().iter().map(of).collect::<Vec<_>>().into());
+        set(
+            "brdf",
+            json!({
+                "theta_i_deg": each(&|lobe| lobe.incident_deg[0].into()),
+                "phi_i_deg": each(&|lobe| lobe.incident_deg[1].into()),
+                "theta_o_deg": measured.theta_deg,
+                "phi_o_deg": measured.phi_deg,
+                "reflectance": bands(|f| f.value),
+                "standard_errors": bands(|f| f.standard_error),
+            }),
+        );
     }
     out.into()
 }
@@ -118,18 +150,70 @@ fn spectrum(s: &Spectral) -> Value {
 }
 
 fn grid(p: &Points) -> Value {
-    let rows = |of: fn(&crate::render::estimate::Figure) -> f64| -> Vec<Vec<f64>> {
+    let rows = |of: fn(&Figure) -> f64| -> Vec<Vec<f64>> {
         p.figures.chunks(p.counts[0]).map(|row| row.iter().map(of).collect()).collect()
     };
     let values = || p.figures.iter().map(|f| f.value);
     json!({
         "points": p.counts,
-        "size_m": p.size_m,
+        "size_m": p.edges.map(glam::DVec3::length),
         "minimum": values().fold(f64::INFINITY, f64::min),
         "maximum": values().fold(f64::NEG_INFINITY, f64::max),
         "values": rows(|f| f.value),
         "standard_errors": rows(|f| f.standard_error),
     })
+}
+
+/// Row by row: one C-plane each.
+fn intensity(m: &Measured) -> Value {
+    let planes =
+        |values: Vec<f64>| -> Vec<Vec<f64>> { values.chunks(m.gamma_deg.len()).map(<[f64]>::to_vec).collect() };
+    json!({
+        "unit": "cd",
+        "c_deg": m.c_deg,
+        "gamma_deg": m.gamma_deg,
+        "values": planes(m.intensity.iter().map(|f| f.value).collect()),
+        "standard_errors": planes(m.intensity.iter().map(|f| f.standard_error).collect()),
+        "scattered": planes(m.scattered.clone()),
+    })
+}
+
+/// The BRDF of a sample as the table that `photopic brdf` reads, with a column for the standard errors.
+#[must_use]
+pub fn brdf_csv(measured: &gonioreflectometer::Measured, bands: &Bands) -> String {
+    let mut out = String::from("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,wavelength_nm,value,standard_error\n");
+    let wavelengths = bands.wavelengths_nm();
+    for lobe in &measured.lobes {
+        let [theta_i, phi_i] = lobe.incident_deg;
+        for (cell, figures) in lobe.values.chunks(wavelengths.len()).enumerate() {
+            let (row, column) = (cell / measured.phi_deg.len(), cell % measured.phi_deg.len());
+            // The normal has one direction, whatever its azimuth.
+            if row == 0 && column > 0 {
+                continue;
+            }
+            let (theta_o, phi_o) = (measured.theta_deg[row], measured.phi_deg[column]);
+            for (index, (nm, f)) in wavelengths.iter().zip(figures).enumerate() {
+                // A line may stand where a density is sampled as well; both have the same BRDF.
+                if !wavelengths[..index].contains(nm) {
+                    // Writing to a string cannot fail.
+                    let _ = writeln!(out, "{theta_i},{phi_i},{theta_o},{phi_o},{nm},{},{}", f.value, f.standard_error);
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The points of a grid as a table: `x_m,y_m,z_m`, the reading and its standard error, row by row along the first edge.
+#[must_use]
+pub fn grid_csv(points: &Points, quantity: &str, unit: &str) -> String {
+    let mut out = format!("x_m,y_m,z_m,{quantity}_{unit},standard_error_{unit}\n");
+    for (index, figure) in points.figures.iter().enumerate() {
+        let p = points.position(index);
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{},{},{},{},{}", p.x, p.y, p.z, figure.value, figure.standard_error);
+    }
+    out
 }
 
 /// The result of a render, one object of `results`.
@@ -175,6 +259,23 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
                 significant(high, 4),
                 r.unit,
                 significant(low / r.figure.value, 3)
+            );
+        }
+        if let Some(m) = &r.intensities {
+            let (index, peak) = (m.intensity.iter().enumerate())
+                .fold((0, 0.0), |best, (i, f)| if f.value > best.1 { (i, f.value) } else { best });
+            let rows = m.gamma_deg.len();
+            let error = m.intensity.iter().map(|f| f.standard_error).fold(0.0, f64::max);
+            let _ = writeln!(
+                out,
+                "{:width$}  {} × {} directions, peak {} cd at C {}°, γ {}°; largest standard error {} cd",
+                "",
+                m.c_deg.len(),
+                rows,
+                significant(peak, 5),
+                m.c_deg[index / rows],
+                m.gamma_deg[index % rows],
+                significant(error, 2)
             );
         }
         if let Some(s) = &r.spectral {
@@ -223,6 +324,8 @@ pub fn contents(built: &Built) -> Value {
             let (kind, count) = match &i.kind {
                 Kind::Meter(m) => (crate::render::reading::quantity(&m.response).0, 1),
                 Kind::Grid { meters, .. } => (crate::render::reading::quantity(&meters[0].response).0, meters.len()),
+                Kind::Gonioreflectometer(g) => ("brdf", g.pairs()),
+                Kind::Goniophotometer(g) => ("intensity", g.directions()),
                 Kind::Camera(c) => ("picture", c.width() as usize * c.height() as usize),
             };
             json!({"name": i.name, "kind": kind, "points": count})

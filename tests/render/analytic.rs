@@ -7,7 +7,7 @@ use photopic::brdf::lambert::Lambert;
 use photopic::render::bands::Bands;
 use photopic::render::emission::Emission;
 use photopic::render::estimate::Figure;
-use photopic::render::integrator::path::Limits;
+use photopic::render::integrator::path::{Follow, Limits};
 use photopic::render::light::Light;
 use photopic::render::light::bounding::BoundingSphere;
 use photopic::render::light::environment::Environment;
@@ -132,6 +132,57 @@ fn an_integrating_sphere() {
     }
 }
 
+/// As white as no paint is: a thousand reflections of a path. 0.3 % instead of 0.1 %, since the latter takes 10⁹ of them.
+#[test]
+fn an_integrating_sphere_of_999_thousandths() {
+    let wall = Sphere::new(DVec3::ZERO, 0.5).expect("a sphere");
+    let lamp = Point::new(DVec3::ZERO, &[1000.0 / (4.0 * std::f64::consts::PI)]).expect("a lamp");
+    let scene = scene(vec![part(wall, 0.999, None)], vec![Arc::new(lamp)]);
+    let place = Place::Point(SurfacePoint::meter(DVec3::new(0.5, 0.0, 0.0), DVec3::NEG_X, 1e-12));
+    // Φ/(A (1 − ρ)), A = π m².
+    agrees(read_to(&scene, place, 5, 3e-3), 1e6 / std::f64::consts::PI, "integrating sphere");
+}
+
+/// Form factors as illuminances, E/(π L): from a floor to a wall of a cube, between squares opposite each other and coaxial disks, and
+/// between concentric spheres; and a point beside an upright square.
+#[test]
+fn form_factors() {
+    let Some(cases) = cases() else { return };
+    let factor = |lamp: Part, receiver: Arc<dyn Shape>, seed| {
+        let figure = read(&scene(vec![lamp], Vec::new()), Place::Area(receiver), seed);
+        Figure {
+            value: figure.value / std::f64::consts::PI,
+            standard_error: figure.standard_error / std::f64::consts::PI,
+        }
+    };
+    let square = |corner, a, b| Rectangle::new(corner, a, b).expect("a square");
+    let floor: Arc<dyn Shape> = Arc::new(square(DVec3::ZERO, DVec3::X, DVec3::Y));
+    let wall = || part(square(DVec3::ZERO, DVec3::Y, DVec3::Z), 0.0, Some(1.0));
+    agrees(factor(wall(), Arc::clone(&floor), 20), value(&cases, "F12_cube_adjacent"), "adjacent squares");
+    let lid = part(square(DVec3::Z, DVec3::Y, DVec3::X), 0.0, Some(1.0));
+    agrees(factor(lid, floor, 21), value(&cases, "F12_unit_squares_parallel_d1"), "opposite squares");
+    let disk = |z: f64, normal| Disk::new(DVec3::new(0.0, 0.0, z), normal, 1.0).expect("a disk");
+    let lid = part(disk(1.0, DVec3::NEG_Z), 0.0, Some(1.0));
+    let below: Arc<dyn Shape> = Arc::new(disk(0.0, DVec3::Z));
+    agrees(factor(lid, below, 22), value(&cases, "F12_coaxial_disks_r1_d1"), "coaxial disks");
+    let upright = scene(vec![wall()], Vec::new());
+    let beside = read(&upright, at(DVec3::X, DVec3::Z), 23);
+    agrees(beside, value(&cases, "rect_perp_b1_a1_c1_E_over_L"), "a point beside a square");
+
+    // The wall of the outer sphere sees the inner one, and the rest of itself.
+    let ball = |radius, radiance: Option<f64>| {
+        let mut ball = part(Sphere::new(DVec3::ZERO, radius).expect("a sphere"), 0.0, None);
+        ball.emission = radiance.map(|l| Arc::new(Emission::new(vec![l / std::f64::consts::PI], 0.0, true)));
+        ball
+    };
+    let factors = cases["concentric_spheres_F21_F22_r1_0.5_r2_1"]["value"].as_array().expect("numbers");
+    for (inner, outer, expected) in [(Some(1.0), None, &factors[0]), (None, Some(1.0), &factors[1])] {
+        let spheres = scene(vec![ball(0.5, inner), ball(1.0, outer)], Vec::new());
+        let on_the_wall = Place::Point(SurfacePoint::meter(DVec3::X, DVec3::NEG_X, 1e-12));
+        agrees(read(&spheres, on_the_wall, 24), expected.as_f64().expect("a number"), "concentric spheres");
+    }
+}
+
 /// The mean over the walls of a closed cube of edge 4 m with a lamp of 10 000 lm in its middle.
 #[test]
 fn a_closed_cube() {
@@ -210,6 +261,34 @@ fn a_flat_spectral_radiance() {
     // The case prints 72 983.5 cd/m²; every sample is the same.
     assert!((figure.value - value(&cases, "flat_1_W_m2_nm_lx")).abs() < 0.05, "{figure:?}");
     assert!(figure.standard_error < 1e-9 * figure.value, "{figure:?}");
+}
+
+/// Direct light alone, and the same without shadows: L = ρ/π · E below a square of 1 cd/m², with a black ball before the meter's own
+/// light that hides all of it.
+#[test]
+fn direct_light_with_and_without_shadows() {
+    let Some(cases) = cases() else { return };
+    let square = || Rectangle::new(DVec3::new(0.0, 0.0, 1.0), DVec3::Y, DVec3::X).expect("a square");
+    let floor = || Rectangle::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 5.0, DVec3::Y * 5.0).expect("a floor");
+    let lid = || Rectangle::new(DVec3::new(-3.0, -3.0, 0.9), DVec3::X * 7.0, DVec3::Y * 7.0).expect("a lid");
+    let expected = 0.6 / std::f64::consts::PI * value(&cases, "rect_centre_1x1_h1_E_over_L");
+    let look = |parts, limits| {
+        let scene = scene(parts, Vec::new());
+        let settings = Settings::new(12, limits, 1);
+        let above = DVec3::new(0.5, 0.5, 0.5);
+        let meter = Meter { place: at(above, DVec3::NEG_Z), response: Response::Cone { sin: 1e-4 } };
+        let mut board = Board::new(&scene, &settings, Share::WHOLE, vec![(0, meter)]);
+        board.sample_until(1 << 13);
+        board.estimate(0).figure(&[1.0])
+    };
+    let bare = || vec![part(square(), 0.0, Some(1.0)), part(floor(), 0.6, None)];
+    let hidden = || bare().into_iter().chain([part(lid(), 0.0, None)]).collect::<Vec<_>>();
+    for follow in [Follow::Nothing, Follow::Specular] {
+        let direct = Limits { follow, ..Limits::default() };
+        agrees(look(bare(), direct), expected, "direct");
+        assert_eq!(look(hidden(), direct).value, 0.0);
+        agrees(look(hidden(), Limits { shadows: false, ..direct }), expected, "without shadows");
+    }
 }
 
 /// A point, and a small diffuse disk of the same intensity, light a meter alike, and the disk as a luminaire would.

@@ -59,6 +59,56 @@ fn a_lamp_is_read_with_its_colour() {
     assert_eq!(out["inputs"][0]["sha256"].as_str().map(str::len), Some(64));
 }
 
+/// In a uniform surround nothing that conserves energy can be told from it, whatever stands beside it: every spot is 1000 cd/m².
+#[test]
+fn a_furnace_hides_whatever_conserves_energy() {
+    // Ground glass conserves energy to 5e-4, the accuracy of its table, at each of the some four crossings of a path through a ball.
+    let materials = [
+        ("white", "reflectance = 1.0", 0.0),
+        ("glass", "dielectric = { index = 1.5 }", 0.0),
+        ("ground", "dielectric = { index = 1.5, alpha = 0.3 }", 2e-3),
+        ("coarse", "dielectric = { index = 1.5, alpha = 1.0 }", 2e-3),
+        ("pane", "pane = { index = 1.5, transmittance = 1.0 }", 0.0),
+        ("fields", "mixture = [{ material = \"white\", share = 0.4 }, { material = \"ground\", share = 0.6 }]", 2e-3),
+    ];
+    let mut text = String::from(
+        "[render]\nmeter_samples = 2097152\n[[light]]\nenvironment = { radiance = \"1000 cd/m2\" }\nspectrum = \"line:555nm\"\n",
+    );
+    for (number, (name, kind, _)) in materials.iter().enumerate() {
+        let x = 3 * number;
+        text += &format!(
+            "[[material]]\nname = \"{name}\"\n{kind}\n[[shape]]\nmaterial = \"{name}\"\nsphere = {{ centre = [{x}, 0, 0], radius = \"1 m\" }}\n\
+             [[sensor]]\nname = \"{name}\"\ntarget = \"0.1 %\"\n\
+             luminance = {{ at = [{x}, -4, 0.3], look_at = [{x}, 0, 0.3], acceptance = \"20 deg\" }}\n"
+        );
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = json(photopic().arg("render").arg(scene(&folder, &text)).arg("--json"));
+    let sensors = out["results"][0]["sensors"].as_array().expect("readings");
+    assert_eq!(sensors.len(), materials.len());
+    for (sensor, (_, _, accuracy)) in sensors.iter().zip(materials) {
+        let number = |key: &str| sensor[key].as_f64().expect("a number");
+        let (value, error) = (number("value"), number("standard_error"));
+        assert!(error <= 1.0 && (value - 1000.0).abs() <= 3.0 * error + 1000.0 * accuracy + 1e-9, "{sensor}");
+    }
+}
+
+/// A preview says of itself that it measures nothing, and does not see the board over the meter.
+#[test]
+fn a_preview_says_that_it_is_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let board = "[[shape]]\nrectangle = { corner = [-1, -1, 1], edges = [[2, 0, 0], [0, 2, 0]] }\n";
+    let path = scene(&folder, &format!("{board}{LAMP}"));
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--preview"]));
+    let result = &out["results"][0];
+    assert_eq!(result["model"]["solver"], "preview");
+    assert!((result["sensors"][0]["value"].as_f64().expect("a number") - 250.0).abs() < 1e-9);
+    assert!(out["findings"].as_array().expect("findings").iter().any(|f| f["code"] == "R007"), "{out}");
+    let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "64"]));
+    assert_eq!(out["results"][0]["sensors"][0]["value"].as_f64(), Some(0.0));
+    photopic().arg("render").arg(&path).args(["--preview", "--samples", "9"]).assert().code(2);
+}
+
 /// The flux stated is the flux that `--check` prints.
 #[test]
 fn a_check_says_what_the_scene_holds() {

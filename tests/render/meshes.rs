@@ -10,6 +10,7 @@ use photopic::render::mesh::{Mesh, MeshData};
 use photopic::render::placed::PlacedMesh;
 use photopic::render::ray::{Crossing, Ray};
 use photopic::render::shape::Shape;
+use photopic::render::shape::rectangle::Rectangle;
 use photopic::render::shape::triangle::cross_triangle;
 use proptest::prelude::*;
 
@@ -265,4 +266,19 @@ fn what_is_no_triangle_is_left_out_and_counted() {
     );
     let wrong = MeshData { uvs: vec![glam::Vec2::ZERO], ..data };
     assert!(Mesh::new(wrong).expect_err("too few").to_string().starts_with("1 texture coordinates for 5 corners"));
+}
+
+/// A direction with −0 in it is the same as one with 0: nothing leaks for the sign of nothing.
+#[test]
+fn a_direction_of_minus_zero_misses_nothing() {
+    let square = Rectangle::new(DVec3::new(3.0, -1.0, -1.0), DVec3::Y * 2.0, DVec3::Z * 2.0).expect("a square");
+    let surfaces = Surfaces::new(vec![Arc::new(square) as Arc<dyn Shape>]);
+    for [y, z] in [[0.0, 0.0], [-0.0, 0.0], [0.0, -0.0], [-0.0, -0.0]] {
+        for [from_y, from_z] in [[0.01, 0.02], [-0.3, 0.2], [0.5, -0.7], [0.0, 0.0]] {
+            let ray = Ray { origin: DVec3::new(6.0, from_y, from_z), direction: DVec3::new(-1.0, y, z) };
+            let (_, crossing) = surfaces.closest(&ray, f64::INFINITY).expect("it is in the way");
+            assert_eq!(crossing.t, 3.0);
+            assert!(surfaces.is_occluded(&ray, f64::INFINITY, None));
+        }
+    }
 }

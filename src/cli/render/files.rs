@@ -14,7 +14,7 @@ use crate::constants::SecondRadiation;
 use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::format::{self, ReadOptions};
-use crate::render::build::{Built, Files, PictureFile};
+use crate::render::build::{Built, Files, Instrument, Kind, PictureFile};
 use crate::render::format::{self as mesh, Object};
 use crate::render::reading::Reading;
 use crate::report::envelope::Input;
@@ -132,9 +132,17 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
             .at(Location::default().in_file(&beside(path, &i.file)))
             .hint("faces count as the file gives them, those of more than three corners as several triangles")
     });
-    let dark = built.scene.lights().is_empty().then(|| {
+    // A gonioreflectometer brings its own light.
+    let brings_light = |i: &Instrument| matches!(i.kind, Kind::Gonioreflectometer(_));
+    let is_dark = built.scene.lights().is_empty() && !built.instruments.iter().all(brings_light);
+    let dark = is_dark.then(|| {
         let finding = Finding::warning("R002", "nothing shines in the scene: every reading is 0");
         finding.at(Location::default().in_file(path)).hint("a [[light]], or a shape with an emission")
+    });
+    let preview = (!built.settings.limits.shadows).then(|| {
+        let finding =
+            Finding::warning("R007", "a preview, direct light without shadows: no figure of it is a measurement");
+        finding.at(Location::default().in_file(path)).hint("the solver `path` measures")
     });
     let faults = (readings.iter().filter(|r| r.faults.count() > 0)).map(|r| {
         let f = &r.faults;
@@ -148,5 +156,5 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
-    incomplete.chain(dark).chain(faults).collect()
+    incomplete.chain(dark).chain(preview).chain(faults).collect()
 }

@@ -3,6 +3,7 @@
 mod audits;
 mod files;
 mod pictures;
+mod sheets;
 mod state;
 mod work;
 
@@ -14,7 +15,7 @@ use clap::Args;
 use super::output::{self, Sink};
 use super::{Failure, Talk};
 use crate::render::build::{Built, Kind};
-use crate::render::description::{self, Model};
+use crate::render::description::{self, Model, Solver};
 use crate::render::reading;
 use crate::render::spool::Share;
 use crate::report::render as report;
@@ -29,6 +30,7 @@ A scene is a TOML file of materials, shapes, lights and sensors; docs/scenes.md 
 Examples:
   photopic render data/scenes/office.toml
   photopic render room.toml --check
+  photopic render room.toml --preview                          (a first look, no measurement)
   photopic render room.toml --target '1 %' --json -o readings.json
   photopic render room.toml --samples 1024 --folder pictures
   photopic render room.toml --checkpoint room.state            (run it again after a break)
@@ -43,6 +45,9 @@ pub(super) struct RenderArgs {
     /// Print the JSON schema of scenes.
     #[arg(long, conflicts_with_all = ["check", "scene"])]
     schema: bool,
+    /// A first look: direct light without shadows, one sample of a pixel and 64 of a meter. Its figures are no measurement.
+    #[arg(long, conflicts_with_all = ["samples", "meter_samples", "target", "checkpoint", "resume", "shard"])]
+    preview: bool,
     /// Samples of a pixel, instead of the scene's.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
@@ -147,29 +152,35 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         writeln!(sink, "{:#}", description::schema())?;
         return sink.finish(true);
     };
-    let overrides = Overrides { samples: a.samples, meter_samples: a.meter_samples, seed: a.seed, model: a.model };
+    let preview = |count: u64| a.preview.then_some(count);
+    let overrides = Overrides {
+        solver: a.preview.then_some(Solver::Preview),
+        samples: a.samples.or(preview(1)),
+        meter_samples: a.meter_samples.or(preview(64)),
+        seed: a.seed,
+        model: a.model,
+    };
     let work = Work::new(path, &overrides)?;
     if a.check {
         let result = (report::contents(&work.built), report::contents_text(&work.built));
         let findings = work.findings(&[], None, talk);
         return work.print("render", result, a.json, a.output.as_deref(), findings);
     }
+    let keeps = a.checkpoint.is_some() || a.resume.is_some() || a.shard.is_some();
+    if let Some(reason) = keeps.then(|| stateless(&work.built)).flatten() {
+        return Err(Failure::Message(reason.to_owned()));
+    }
     let place = a.checkpoint.as_deref().or(a.resume.as_deref()).or(a.output.as_deref().filter(|_| a.shard.is_some()));
     let share = a.shard.unwrap_or(Share::WHOLE);
-    let mut state = match place {
-        Some(file) if a.checkpoint.is_some() || a.resume.is_some() || a.shard.is_some() => {
+    let mut state = match place.filter(|_| keeps) {
+        Some(file) => {
             if work.read.iter().any(|input| output::same_file(Path::new(input), file)) {
                 return Err(Failure::Message(output::overwrites(file)));
             }
             Some(State::open(file, &work.header(share), a.resume.is_some())?)
         }
-        _ => None,
+        None => None,
     };
-    if state.is_some() && work.built.instruments.iter().any(|i| i.target.is_some()) {
-        let message =
-            "the scene has a `target`, and a state is kept only for a number of samples; expected one or the other";
-        return Err(Failure::Message(message.to_owned()));
-    }
     let targets = targets(a, &work.built)?;
     let job = Job { share, folder: a.folder.as_deref().unwrap_or(Path::new("")), targets: &targets, talk };
     match work.render(&job, state.as_mut())? {
@@ -178,11 +189,26 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
     }
 }
 
+/// Why no state can be kept of a scene.
+fn stateless(built: &Built) -> Option<&'static str> {
+    let around = |kind: &Kind| matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
+    if built.instruments.iter().any(|i| i.target.is_some()) {
+        Some("the scene has a `target`, and a state is kept only for a number of samples; expected one or the other")
+    } else if built.instruments.iter().any(|i| around(&i.kind)) {
+        Some(
+            "the scene has a goniophotometer or a gonioreflectometer, and a state is kept only for meters and pictures; expected a scene without it, or no --checkpoint, --resume and --shard",
+        )
+    } else {
+        None
+    }
+}
+
 pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
     let mut state = State::join(&a.shards)?;
     let header = state.header().clone();
     let task = &header.task;
     let overrides = Overrides {
+        solver: None,
         samples: Some(task.samples),
         meter_samples: Some(task.meter_samples),
         seed: Some(task.seed),
@@ -207,17 +233,22 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
     let unit = |kind: &Kind| match kind {
         Kind::Meter(m) => Some(reading::quantity(&m.response).1),
         Kind::Grid { meters, .. } => Some(reading::quantity(&meters[0].response).1),
-        Kind::Camera(_) => None,
+        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => None,
     };
     let mut any = false;
     let targets = (built.instruments.iter())
         .map(|i| {
             let unit = unit(&i.kind)?;
+            // A first look does not wait for the scene's own targets.
+            if a.preview {
+                return None;
+            }
             let Some(t) = &a.target else { return i.target };
             let meant = match t.which.as_deref() {
                 None => true,
                 Some("lux" | "lx") => unit == "lx",
                 Some("nits" | "nit" | "cd/m2") => unit == "cd/m2",
+                Some("lm") => unit == "lm",
                 Some(name) => name == i.name,
             };
             any |= meant;
@@ -230,7 +261,7 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
                 built.instruments.iter().filter(|i| unit(&i.kind).is_some()).map(|i| i.name.as_str()).collect();
             let which = t.which.as_deref().unwrap_or("any meter");
             Err(Failure::Message(format!(
-                "--target: no meter is meant by `{which}`; expected lux, nits or one of: {}",
+                "--target: no meter is meant by `{which}`; expected lux, nits, lm or one of: {}",
                 names.join(", ")
             )))
         }

@@ -9,15 +9,16 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::state::{self, State};
-use super::{audits, files, pictures};
+use super::{audits, files, pictures, sheets};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
 use crate::render::audit::{Audit, bias, energy};
 use crate::render::build::{Built, Kind, build};
-use crate::render::description::{self, Description, Model};
+use crate::render::description::{self, Description, Model, Solver};
 use crate::render::estimate::REPLICATES;
+use crate::render::goniophotometer::Run;
 use crate::render::measure::{Board, Meter, Target};
 use crate::render::reading::{self, Reading};
 use crate::render::spool::{Header, Share, Task};
@@ -30,6 +31,7 @@ const ROUNDS: u64 = 64;
 
 /// What the command line puts in place of the scene's.
 pub(super) struct Overrides {
+    pub solver: Option<Solver>,
     pub samples: Option<u64>,
     pub meter_samples: Option<u64>,
     pub seed: Option<u64>,
@@ -66,6 +68,8 @@ pub(super) struct Job<'a> {
 pub(super) struct Done {
     readings: Vec<Reading>,
     written: Vec<String>,
+    /// What the files written could not carry.
+    findings: Vec<Finding>,
 }
 
 impl Work {
@@ -75,6 +79,7 @@ impl Work {
         let wrong = |e: description::Error| Failure::Message(format!("{path}:{e}"));
         let mut description = Description::parse(&scene.text).map_err(wrong)?;
         let render = &mut description.render;
+        render.solver = overrides.solver.unwrap_or(render.solver);
         render.samples = overrides.samples.unwrap_or(render.samples);
         render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);
         render.seed = overrides.seed.unwrap_or(render.seed);
@@ -95,7 +100,7 @@ impl Work {
             let own: &[Meter] = match &instrument.kind {
                 Kind::Meter(meter) => std::slice::from_ref(meter),
                 Kind::Grid { meters, .. } => meters,
-                Kind::Camera(_) => &[],
+                Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => &[],
             };
             meters.extend((0_u64..).zip(own).map(|(point, m)| ((number << 32) + point, m.clone())));
         }
@@ -119,12 +124,17 @@ impl Work {
     pub(super) fn render(&self, job: &Job<'_>, mut state: Option<&mut State>) -> Result<Option<Done>, Failure> {
         let render = &self.description.render;
         let per_replicate = render.meter_samples.div_ceil(REPLICATES as u64);
-        let pixels: u64 = (self.built.instruments.iter())
-            .map(|i| if let Kind::Camera(c) = &i.kind { u64::from(c.width()) * u64::from(c.height()) } else { 0 })
+        let others: u64 = (self.built.instruments.iter())
+            .map(|i| match &i.kind {
+                Kind::Camera(c) => u64::from(c.width()) * u64::from(c.height()) * render.samples,
+                Kind::Goniophotometer(_) => render.meter_samples,
+                Kind::Gonioreflectometer(g) => render.meter_samples * g.incident() as u64,
+                Kind::Meter(_) | Kind::Grid { .. } => 0,
+            })
             .sum();
         // In units of samples, of meters and pixels alike.
         let meter_work = per_replicate * (REPLICATES * self.meters.len()) as u64;
-        let progress = progress(meter_work + pixels * render.samples, job.talk);
+        let progress = progress(meter_work + others, job.talk);
         let mut board = Board::new(&self.built.scene, &self.built.settings, job.share, self.meters.clone());
         if let Some(state) = state.as_deref_mut() {
             state.restore(&mut board, self.meters.len(), per_replicate)?;
@@ -149,7 +159,8 @@ impl Work {
             reached[n] = Some((relative, met));
         }
         progress.set_position(meter_work);
-        let mut done = Done { readings: Vec::new(), written: Vec::new() };
+        let mut done = Done { readings: Vec::new(), written: Vec::new(), findings: Vec::new() };
+        let place = sheets::Place { folder: job.folder, inputs: &self.read };
         let mut picture = 0;
         for (n, instrument) in self.built.instruments.iter().enumerate() {
             if let Kind::Camera(camera) = &instrument.kind {
@@ -171,6 +182,29 @@ impl Work {
                 let noise = job.render(stored, &progress, &mut done.written)?;
                 picture += 1;
                 done.readings.push(reading::of_picture(instrument, &noise, render.samples));
+            } else if let Kind::Goniophotometer(goniophotometer) = &instrument.kind {
+                let measured = goniophotometer.measure(&Run {
+                    scene: &self.built.scene,
+                    settings: &self.built.settings,
+                    instrument: (n as u64) << 32,
+                    samples: render.meter_samples,
+                    weights: &self.built.quantities.luminous,
+                });
+                progress.inc(render.meter_samples);
+                if let Some(described) = &self.description.sensor[n].goniophotometer {
+                    let described = described.get_ref();
+                    done.findings.extend(place.lamp(described, &instrument.name, &measured, &mut done.written)?);
+                }
+                let (bands, quantities) = (self.built.scene.bands(), &self.built.quantities);
+                done.readings.push(reading::of_goniophotometer(instrument, measured, bands, quantities));
+            } else if let Kind::Gonioreflectometer(gonioreflectometer) = &instrument.kind {
+                let (scene, settings) = (&self.built.scene, &self.built.settings);
+                let measured = gonioreflectometer.measure(scene, settings, (n as u64) << 32, render.meter_samples);
+                progress.inc(render.meter_samples * gonioreflectometer.incident() as u64);
+                if let Some(described) = &self.description.sensor[n].gonioreflectometer {
+                    place.brdf(described.get_ref(), &measured, scene.bands(), &mut done.written)?;
+                }
+                done.readings.push(reading::of_gonioreflectometer(instrument, measured, &self.built.quantities));
             } else if let Some(r) = reading::of_board(
                 instrument,
                 &board,
@@ -179,6 +213,10 @@ impl Work {
                 &self.built.quantities,
                 reached[n],
             ) {
+                let described = self.description.sensor[n].illuminance.as_ref().and_then(|i| i.get_ref().grid.as_ref());
+                if let (Some(described), Some(points), true) = (described, &r.points, job.share == Share::WHOLE) {
+                    place.grid(described, &r, points, &mut done.written)?;
+                }
                 done.readings.push(r);
             }
         }
@@ -198,6 +236,9 @@ impl Work {
             Kind::Camera(camera) => bias::of_picture(scene, settings, camera, (n as u64) << 32, weights, SAMPLES),
             _ => {
                 let meters = &self.meters[self.first[n]..self.first[n + 1]];
+                if meters.is_empty() {
+                    return None;
+                }
                 bias::of_meters(scene, settings, meters, weights, SAMPLES.div_ceil(meters.len() as u64))
             }
         });
@@ -223,7 +264,9 @@ impl Work {
         packets: u64,
     ) -> Result<(), Failure> {
         let audit = self.audit(packets);
-        let findings = self.findings(&done.readings, Some(&audit), talk);
+        let mut findings = self.findings(&done.readings, Some(&audit), talk);
+        Notes::new(&[], talk).print(&done.findings);
+        findings.extend_from_slice(&done.findings);
         let seconds = self.begun.elapsed().as_secs_f64();
         let mut result = report::result(&self.built, &done.readings, &done.written, seconds);
         result["energy"] = render_audit::energy(&self.built, &audit);

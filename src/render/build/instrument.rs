@@ -10,7 +10,15 @@ use crate::constants::K_M;
 use crate::geometry::lens::Distortion;
 use crate::render::bands::{Bands, Width};
 use crate::render::description::Error;
-use crate::render::description::sensor::{Camera as DescribedCamera, Illuminance, Projection as Layout, Sensor};
+use crate::render::description::light::Light;
+use crate::render::description::quantity::Angle;
+use crate::render::description::sensor::{
+    Camera as DescribedCamera, Goniophotometer as DescribedGoniophotometer,
+    Gonioreflectometer as DescribedGonioreflectometer, Grid, Illuminance, Projection as Layout, Sensor,
+};
+use crate::render::description::surface::Shape;
+use crate::render::goniophotometer::Goniophotometer;
+use crate::render::gonioreflectometer::{Gonioreflectometer, Spot};
 use crate::render::measure::{Meter, Place};
 use crate::render::ray::SurfacePoint;
 use crate::render::scene::Scene;
@@ -66,9 +74,15 @@ pub enum Kind {
         meters: Vec<Meter>,
         /// Points along the first and the second edge.
         counts: [usize; 2],
-        /// Lengths of the edges, m.
-        size_m: [f64; 2],
+        /// The corner from which the edges go, m.
+        corner: DVec3,
+        /// The edges, m.
+        edges: [DVec3; 2],
     },
+    /// A goniophotometer.
+    Goniophotometer(Goniophotometer),
+    /// A gonioreflectometer.
+    Gonioreflectometer(Gonioreflectometer),
     /// A camera.
     Camera(Camera),
 }
@@ -78,6 +92,12 @@ const ACCEPTANCE_DEG: f64 = 1.0;
 /// Angle across the width of a perspective picture, across the circle of a fisheye, that states none, degrees.
 const FIELD_DEG: f64 = 60.0;
 const FISHEYE_DEG: f64 = 180.0;
+/// Steps of a goniophotometer that states none, degrees.
+const C_STEP_DEG: f64 = 15.0;
+const GAMMA_STEP_DEG: f64 = 5.0;
+/// Steps of a gonioreflectometer that states none, degrees.
+const THETA_STEP_DEG: f64 = 5.0;
+const PHI_STEP_DEG: f64 = 10.0;
 /// Most points of a grid.
 const MOST_POINTS: u64 = 100_000;
 
@@ -118,19 +138,39 @@ impl Builder<'_> {
                 kinds.push(meter(u.get_ref().at, upright(u.get_ref().axis, &u.span())?, response));
             }
         }
+        if let Some(sphere) = &sensor.integrating_sphere {
+            self.in_bounds(&sphere.span())?;
+            kinds.push(Kind::Meter(Meter { place: Place::Around, response: Response::Flux }));
+        }
+        if let Some(g) = &sensor.goniophotometer {
+            self.in_bounds(&g.span())?;
+            kinds.push(Kind::Goniophotometer(self.goniophotometer(g.get_ref(), &g.span())?));
+        }
+        if let Some(g) = &sensor.gonioreflectometer {
+            kinds.push(Kind::Gonioreflectometer(self.gonioreflectometer(g.get_ref(), &g.span())?));
+        }
         if let Some(c) = &sensor.camera {
             kinds.push(Kind::Camera(self.camera(c.get_ref(), &c.span())?));
         }
         let mut kinds = kinds.into_iter();
         let (Some(kind), None) = (kinds.next(), kinds.next()) else {
             let message = format!(
-                "sensor `{}` has not one kind; expected one of illuminance, luminance, cylindrical, hemispherical, spherical, camera",
+                "sensor `{}` has not one kind; expected one of illuminance, luminance, cylindrical, hemispherical, spherical, integrating_sphere, goniophotometer, gonioreflectometer, camera",
                 sensor.name.get_ref()
             );
             return Err(self.wrong(&sensor.name.span(), message));
         };
         if sensor.target.is_some_and(|t| t.0.is_nan() || t.0 <= 0.0) {
             return Err(self.wrong(&sensor.name.span(), "a `target` that is not above 0"));
+        }
+        let fixed = matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
+        if fixed && sensor.target.is_some() {
+            let message = "a `target` of an instrument that takes a fixed number of packets; expected `meter_samples`";
+            return Err(self.wrong(&sensor.name.span(), message));
+        }
+        if matches!(kind, Kind::Gonioreflectometer(_)) && sensor.spectrum {
+            let message = "`spectrum` of a gonioreflectometer, whose table has every wavelength; expected none";
+            return Err(self.wrong(&sensor.name.span(), message));
         }
         let target = sensor.target.map(|t| t.0);
         Ok(Instrument { name: sensor.name.get_ref().clone(), spectrum: sensor.spectrum, target, kind })
@@ -149,26 +189,7 @@ impl Builder<'_> {
                 let axis = self.unit(i.normal.unwrap_or([0.0, 0.0, 1.0]), span)?;
                 Ok(Kind::Meter(Meter { place: point(DVec3::from_array(*at), axis, scene), response }))
             }
-            (None, Some(grid), None) if i.normal.is_none() => {
-                let [u, v] = grid.edges.map(DVec3::from_array);
-                let axis = self.unit(u.cross(v).to_array(), span)?;
-                let [m, n] = grid.points;
-                if m == 0 || n == 0 || u64::from(m) * u64::from(n) > MOST_POINTS {
-                    return Err(
-                        self.wrong(span, format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them"))
-                    );
-                }
-                let corner = DVec3::from_array(grid.corner);
-                let at = |i: u32, j: u32| {
-                    let p = DVec2::new((f64::from(i) + 0.5) / f64::from(m), (f64::from(j) + 0.5) / f64::from(n));
-                    corner + p.x * u + p.y * v
-                };
-                let meters = (0..n)
-                    .flat_map(|j| (0..m).map(move |i| (i, j)))
-                    .map(|(i, j)| Meter { place: point(at(i, j), axis, scene), response })
-                    .collect();
-                Ok(Kind::Grid { meters, counts: [m as usize, n as usize], size_m: [u.length(), v.length()] })
-            }
+            (None, Some(grid), None) if i.normal.is_none() => self.grid(grid, span, scene),
             (None, None, Some(on)) if i.normal.is_none() => {
                 let shapes = &self.description.shape;
                 let named = |n: usize| shapes[n].name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref());
@@ -186,6 +207,104 @@ impl Builder<'_> {
             }
             _ => Err(self.wrong(span, "not one place; expected `at` (with an optional `normal`), `grid`, or `on`")),
         }
+    }
+
+    /// Meters in the middles of the cells of a rectangle.
+    fn grid(&self, grid: &Grid, span: &Range<usize>, scene: &Scene) -> Result<Kind, Error> {
+        let (corner, edges) = match (grid.corner, grid.edges, &grid.on) {
+            (Some(corner), Some(edges), None) => (corner, edges),
+            (None, None, Some(on)) => {
+                let named = |s: &&Shape| s.name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref());
+                let shape = self.description.shape.iter().find(named).and_then(|s| s.rectangle.as_ref());
+                let Some(rectangle) = shape.map(toml::Spanned::get_ref) else {
+                    let message = format!("no rectangle is called `{}`; expected the name of one", on.get_ref());
+                    return Err(self.wrong(&on.span(), message));
+                };
+                (rectangle.corner, rectangle.edges)
+            }
+            _ => return Err(self.wrong(span, "a grid without one place; expected `corner` and `edges`, or `on`")),
+        };
+        let (corner, edges) = (DVec3::from_array(corner), edges.map(DVec3::from_array));
+        let [u, v] = edges;
+        let axis = self.unit(u.cross(v).to_array(), span)?;
+        let [m, n] = grid.points;
+        if m == 0 || n == 0 || u64::from(m) * u64::from(n) > MOST_POINTS {
+            return Err(self.wrong(span, format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them")));
+        }
+        self.ends(grid.isolux.as_deref(), ["png", "svg"], span)?;
+        // A map is drawn at equal scale; edges askew have no such drawing.
+        if grid.isolux.is_some() && u.dot(v).abs() > 1e-6 * u.length() * v.length() {
+            return Err(self.wrong(span, "edges that are not at right angles; expected a rectangle for `isolux`"));
+        }
+        let at = |i: u32, j: u32| {
+            let p = DVec2::new((f64::from(i) + 0.5) / f64::from(m), (f64::from(j) + 0.5) / f64::from(n));
+            corner + p.x * u + p.y * v
+        };
+        let meters = (0..n)
+            .flat_map(|j| (0..m).map(move |i| (i, j)))
+            .map(|(i, j)| Meter { place: point(at(i, j), axis, scene), response: Response::Planar })
+            .collect();
+        Ok(Kind::Grid { meters, counts: [m as usize, n as usize], corner, edges })
+    }
+
+    /// Instruments around everything need lights that they can be around.
+    fn in_bounds(&self, span: &Range<usize>) -> Result<(), Error> {
+        let inside = |l: &Light| l.point.is_some() || l.spot.is_some() || l.lamp.is_some();
+        let outside = self.description.light.iter().position(|l| !inside(l));
+        outside.map_or(Ok(()), |number| {
+            let name = self.description.light[number].name.as_ref().map(|n| format!(" `{}`", n.get_ref()));
+            let message = format!(
+                "light {}{} shines from outside of every instrument around the scene; expected points, spots, lamps and emitting shapes only",
+                number + 1,
+                name.unwrap_or_default()
+            );
+            Err(self.wrong(span, message))
+        })
+    }
+
+    /// A file's name says its format.
+    fn ends(&self, file: Option<&str>, endings: [&str; 2], span: &Range<usize>) -> Result<(), Error> {
+        let known = |file: &str| endings.iter().any(|e| file.to_lowercase().ends_with(&format!(".{e}")));
+        match file.filter(|f| !known(f)) {
+            None => Ok(()),
+            Some(file) => {
+                let [first, second] = endings;
+                let message = format!("the file `{file}`; expected a name that ends in .{first} or .{second}");
+                Err(self.wrong(span, message))
+            }
+        }
+    }
+
+    fn goniophotometer(&self, g: &DescribedGoniophotometer, span: &Range<usize>) -> Result<Goniophotometer, Error> {
+        self.ends(g.file.as_deref(), ["ies", "ldt"], span)?;
+        let degrees = |angle: Option<Angle>, default: f64| angle.map_or(default, |a| a.0.to_degrees());
+        let way = |given: Option<[f64; 3]>, default: DVec3| given.map_or(default, DVec3::from_array);
+        Goniophotometer::new(
+            way(g.down, DVec3::NEG_Z),
+            way(g.c0, DVec3::X),
+            degrees(g.c_step, C_STEP_DEG),
+            degrees(g.gamma_step, GAMMA_STEP_DEG),
+        )
+        .map_err(|e| self.wrong(span, e))
+    }
+
+    fn gonioreflectometer(
+        &self,
+        g: &DescribedGonioreflectometer,
+        span: &Range<usize>,
+    ) -> Result<Gonioreflectometer, Error> {
+        let degrees = |a: &Angle| a.0.to_degrees();
+        let azimuths = g.phi_i.as_ref().map_or(vec![0.0], |all| all.iter().map(degrees).collect());
+        let incident = g.theta_i.iter().flat_map(|theta| azimuths.iter().map(|phi| [degrees(theta), *phi])).collect();
+        let spot = Spot {
+            centre: DVec3::from_array(g.at),
+            normal: g.normal.map_or(DVec3::Z, DVec3::from_array),
+            tangent: g.tangent.map_or(DVec3::X, DVec3::from_array),
+            radius: g.radius.0,
+        };
+        let theta_step = g.theta_step.as_ref().map_or(THETA_STEP_DEG, degrees);
+        let phi_step = g.phi_step.as_ref().map_or(PHI_STEP_DEG, degrees);
+        Gonioreflectometer::new(&spot, incident, theta_step, phi_step).map_err(|e| self.wrong(span, e))
     }
 
     fn camera(&self, c: &DescribedCamera, span: &Range<usize>) -> Result<Camera, Error> {

@@ -170,10 +170,11 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let follow = match render.solver {
         Solver::Path => Follow::All,
         Solver::Whitted => Follow::Specular,
-        Solver::Direct => Follow::Nothing,
+        Solver::Direct | Solver::Preview => Follow::Nothing,
     };
-    let limits =
-        Limits { follow, max_edges: render.max_edges, polarisation: analysis.polarisation, ..Limits::default() };
+    let shadows = render.solver != Solver::Preview;
+    let polarisation = analysis.polarisation;
+    let limits = Limits { follow, max_edges: render.max_edges, polarisation, shadows, ..Limits::default() };
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;

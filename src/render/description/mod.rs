@@ -112,6 +112,8 @@ pub enum Solver {
     Whitted,
     /// Direct light.
     Direct,
+    /// Direct light without shadows: a first look, and no measurement.
+    Preview,
 }
 
 /// How much is modelled.

@@ -40,6 +40,18 @@ pub struct Sensor {
     #[serde(default)]
     #[schemars(with = "Option<Upright>")]
     pub spherical: Option<Spanned<Upright>>,
+    /// All flux that leaves the scene, as in an integrating sphere around it.
+    #[serde(default)]
+    #[schemars(with = "Option<IntegratingSphere>")]
+    pub integrating_sphere: Option<Spanned<IntegratingSphere>>,
+    /// The intensities of all that shines, as a lamp file.
+    #[serde(default)]
+    #[schemars(with = "Option<Goniophotometer>")]
+    pub goniophotometer: Option<Spanned<Goniophotometer>>,
+    /// The BRDF of a sample.
+    #[serde(default)]
+    #[schemars(with = "Option<Gonioreflectometer>")]
+    pub gonioreflectometer: Option<Spanned<Gonioreflectometer>>,
     /// A picture.
     #[serde(default)]
     #[schemars(with = "Option<Camera>")]
@@ -65,16 +77,84 @@ pub struct Illuminance {
     pub on: Option<Spanned<String>>,
 }
 
-/// A grid of points.
+/// A grid of points on a rectangle: `corner` and `edges`, or `on`.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grid {
     /// A corner, m.
-    pub corner: Vector,
+    #[serde(default)]
+    pub corner: Option<Vector>,
     /// The two edges from it, m; the meters face the side from which the turn from the first to the second is anticlockwise.
-    pub edges: [Vector; 2],
-    /// Points along each.
+    #[serde(default)]
+    pub edges: Option<[Vector; 2]>,
+    /// The outside of the rectangle of this name.
+    #[serde(default)]
+    #[schemars(with = "Option<String>")]
+    pub on: Option<Spanned<String>>,
+    /// Points along each edge.
     pub points: [u32; 2],
+    /// Light map with isolux contours to write (PNG or SVG).
+    #[serde(default)]
+    pub isolux: Option<String>,
+    /// Table of the points to write (CSV).
+    #[serde(default)]
+    pub csv: Option<String>,
+}
+
+/// A flux meter.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IntegratingSphere {}
+
+/// A goniophotometer around everything, in C-planes.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Goniophotometer {
+    /// The way of γ = 0; down (−z) without it.
+    #[serde(default)]
+    pub down: Option<Vector>,
+    /// The way of C = 0 at γ = 90°; +x without it.
+    #[serde(default)]
+    pub c0: Option<Vector>,
+    /// Between C-planes; 15° without it.
+    #[serde(default)]
+    pub c_step: Option<Angle>,
+    /// Between angles γ; 5° without it.
+    #[serde(default)]
+    pub gamma_step: Option<Angle>,
+    /// Lamp file to write: LM-63 (.ies) or EULUMDAT (.ldt).
+    #[serde(default)]
+    pub file: Option<String>,
+}
+
+/// A gonioreflectometer: a beam on a round spot of a sample, and detectors over it.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gonioreflectometer {
+    /// The middle of the spot, m.
+    pub at: Vector,
+    /// The way that the sample faces; upwards without it.
+    #[serde(default)]
+    pub normal: Option<Vector>,
+    /// The way of φ = 0; +x without it.
+    #[serde(default)]
+    pub tangent: Option<Vector>,
+    /// Radius of the spot.
+    pub radius: Length,
+    /// Angles of incidence.
+    pub theta_i: Vec<Angle>,
+    /// Azimuths of incidence, each with every angle; 0 without them.
+    #[serde(default)]
+    pub phi_i: Option<Vec<Angle>>,
+    /// Between angles of reflection; 5° without it.
+    #[serde(default)]
+    pub theta_step: Option<Angle>,
+    /// Between azimuths of reflection; 10° without it.
+    #[serde(default)]
+    pub phi_step: Option<Angle>,
+    /// BRDF table to write (CSV).
+    #[serde(default)]
+    pub file: Option<String>,
 }
 
 /// A spot meter.

@@ -83,9 +83,25 @@ impl<'a> LightTracer<'a> {
         let index = self.lights.partition_point(|&s| s <= choice);
         let Some(light) = self.scene.lights().get(index) else { return };
         let probability = self.lights[index] - if index == 0 { 0.0 } else { self.lights[index - 1] };
-        let Some(mut ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
+        let Some(ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
+        // Where nothing shines there are no shares.
+        if probability.is_nan() {
+            return;
+        }
         self.flux.iter_mut().for_each(|f| *f /= probability);
         visitor.starts(index);
+        self.fly(ray, hero, sampler, visitor);
+    }
+
+    /// Sends one packet of 1 W (per nm) in every band along a ray.
+    pub fn beam(&mut self, ray: Ray, sampler: &mut Sampler, visitor: &mut impl Visitor) {
+        let [hero, ..] = sampler.four();
+        self.flux.fill(1.0);
+        self.fly(ray, hero, sampler, visitor);
+    }
+
+    /// Follows the packet; `hero` is the uniform number that draws the band which it keeps where it must be split.
+    fn fly(&mut self, mut ray: Ray, hero: f64, sampler: &mut Sampler, visitor: &mut impl Visitor) {
         visitor.emitted(&self.flux);
         let start: f64 = self.flux.iter().sum();
         let mut hero = self.heroes.partition_point(|&s| s <= hero).min(self.heroes.len() - 1);

@@ -46,11 +46,13 @@ pub struct Limits {
     pub roulette_from: u32,
     /// Whether what glass and metal polarise is followed to the next glass; without it a pane at 75° is 3.5 % off.
     pub polarisation: bool,
+    /// Whether anything can stand in the way of a light; without shadows a picture is a preview.
+    pub shadows: bool,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { follow: Follow::All, max_edges: None, roulette_from: 4, polarisation: true }
+        Self { follow: Follow::All, max_edges: None, roulette_from: 4, polarisation: true, shadows: true }
     }
 }
 
@@ -241,7 +243,13 @@ impl<'a> PathTracer<'a> {
         let seek = !material.is_delta();
         if seek {
             self.choice.prepare(self.scene.lights(), point.position);
-            self.light(point, u, |incident, value| evaluate(material, incident, outgoing, hero, value), &frame);
+            // Where the path ends here, no other strategy competes with the light's own.
+            let competes = self.limits.follow == Follow::All;
+            let function = |incident, value: &mut [f64]| {
+                let pdf = evaluate(material, incident, outgoing, hero, value);
+                if competes { pdf } else { 0.0 }
+            };
+            self.light(point, u, function, &frame);
         }
         if self.limits.follow == Follow::Nothing {
             return None;
@@ -304,7 +312,8 @@ impl<'a> PathTracer<'a> {
         }
         let ray = Ray { origin: point.origin_towards(towards.direction), direction: towards.direction };
         let ignored = self.scene.surface_of_light(index);
-        if light.casts_shadows() && self.scene.surfaces().is_occluded(&ray, towards.distance, ignored) {
+        let casts_shadows = self.limits.shadows && light.casts_shadows();
+        if casts_shadows && self.scene.surfaces().is_occluded(&ray, towards.distance, ignored) {
             return;
         }
         let weight = if towards.delta {

@@ -6,6 +6,7 @@
 //! | hemispherical | (1 + cosθ)/2 | CIE 202:2011, half a sphere's mean over its surface |
 //! | cylindrical | sinθ/π | ILV 17-21-058 |
 //! | spherical (scalar) | 1/4 | a sphere's mean over its surface |
+//! | flux through all that surrounds the scene | 1 | ILV 17-25-074, an ideal integrating sphere |
 //! | radiance (luminance) in a cone | 1/(π sin²α) · cosθ within α | mean, weighted as an instrument's detector sees it |
 
 use std::f64::consts::{PI, TAU};
@@ -25,6 +26,8 @@ pub enum Response {
     Cylindrical,
     /// Mean irradiance of a small sphere's surface.
     Spherical,
+    /// All that leaves the scene, in full.
+    Flux,
     /// Mean radiance of a cone about +z of the given sine of its half-angle, in (0, 1].
     Cone {
         /// Sine of the half-angle of acceptance.
@@ -42,6 +45,7 @@ impl Response {
             Self::Hemispherical => 0.5 * (1.0 + cos),
             Self::Cylindrical => direction.x.hypot(direction.y) / PI,
             Self::Spherical => 0.25,
+            Self::Flux => 1.0,
             Self::Cone { sin } => {
                 if cos > 0.0 && direction.x.hypot(direction.y) <= sin {
                     cos / (PI * sin * sin)
@@ -61,7 +65,7 @@ impl Response {
                 let p = sampling::disk(u) * sin;
                 (p.extend((1.0 - p.length_squared()).max(0.0).sqrt()), 1.0)
             }
-            Self::Hemispherical | Self::Cylindrical | Self::Spherical => {
+            Self::Hemispherical | Self::Cylindrical | Self::Spherical | Self::Flux => {
                 let z = 1.0 - 2.0 * u[0];
                 let r = (1.0 - z * z).max(0.0).sqrt();
                 let (y, x) = (TAU * u[1]).sin_cos();
@@ -77,7 +81,7 @@ impl Response {
         match self {
             Self::Planar => sampling::cosine_hemisphere_pdf(direction.z),
             Self::Cone { .. } => self.weight(direction),
-            Self::Hemispherical | Self::Cylindrical | Self::Spherical => 1.0 / (2.0 * TAU),
+            Self::Hemispherical | Self::Cylindrical | Self::Spherical | Self::Flux => 1.0 / (2.0 * TAU),
         }
     }
 
@@ -92,20 +96,21 @@ impl Response {
 mod tests {
     use super::*;
 
-    const ALL: [Response; 6] = [
+    const ALL: [Response; 7] = [
         Response::Planar,
         Response::Hemispherical,
         Response::Cylindrical,
         Response::Spherical,
+        Response::Flux,
         Response::Cone { sin: 1.0 },
         Response::Cone { sin: 0.01 },
     ];
 
-    /// Under a uniform sky of radiance 1 all round: π, 2π, π, π, and the mean radiance 1, by the integrals of the weights over the sphere.
+    /// Under a uniform sky of radiance 1 all round: π, 2π, π, π, 4π, and the mean radiance 1, by the integrals of the weights over the sphere.
     #[test]
     fn readings_of_a_uniform_sphere_of_light() {
         let n = 300;
-        for (response, expected) in ALL.iter().zip([PI, TAU, PI, PI, 1.0, 1.0]) {
+        for (response, expected) in ALL.iter().zip([PI, TAU, PI, PI, 2.0 * TAU, 1.0, 1.0]) {
             let mut sum = 0.0;
             for i in 0..n {
                 for j in 0..n {
