@@ -325,19 +325,24 @@ fn intensity(scene: &Scene, index: usize, direction: DVec3, u: [f64; 3], out: &m
         }
         return true;
     }
-    // A light without a surface tells what arrives at a point. Seen from very far it stands where it is to a millionth of its
-    // distance; seen again from a point in the very direction from there, it is I/d².
+    // A light without a surface tells what arrives at a point. From as far as this it is seen in the direction asked for to 1e-9, which
+    // finds where it is to 1e-7; from near by, then, to the last digit, unless the direction is on the very edge of its light. Seen
+    // again in the very direction from there, it is I/d².
     let bounds = scene.bounds();
     let (middle, size) = if bounds.is_finite() {
-        (0.5 * (bounds.min + bounds.max), (bounds.max - bounds.min).length())
+        (0.5 * (bounds.min + bounds.max), (bounds.max - bounds.min).length().max(1.0))
     } else {
-        (DVec3::ZERO, 0.0)
+        (DVec3::ZERO, 1.0)
     };
-    let reach = 1e6 * size.max(1.0);
-    let far = middle + reach * direction;
-    let Some(seen) = light.sample_towards(far, u, out) else { return false };
-    let position = far + seen.distance * seen.direction;
-    let Some(seen) = light.sample_towards(position + reach * direction, u, out) else { return false };
+    let mut look =
+        |from: DVec3| light.sample_towards(from, u, out).map(|seen| (seen, from + seen.distance * seen.direction));
+    let reach = 1e9 * size;
+    let Some((_, about)) = look(middle + reach * direction) else { return false };
+    let (position, from) = match look(about + size * direction) {
+        Some((_, position)) => (position, position + size * direction),
+        None => (about, about + reach * direction),
+    };
+    let Some((seen, _)) = look(from) else { return false };
     if light.casts_shadows() && scene.surfaces().is_occluded(&Ray { origin: position, direction }, f64::INFINITY, None)
     {
         return false;
