@@ -44,7 +44,7 @@ Examples:
   photopic brdf plot 'ggx(alpha=0.1, medium=Au)' -o gold.svg
   photopic brdf plot paint.binary --kind slice -o paint.png
 
-A place that a table does not hold is drawn with the table's guess, but in a slice it has a colour of its own.")]
+What a table does not hold is marked: dashed lines are its guess, and in a sphere, a slice or a lobe such places are pale lilac.")]
 pub(in crate::cli) struct PlotArgs {
     #[command(flatten)]
     materials: MaterialArgs,
@@ -78,7 +78,7 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
     let names: Vec<String> = bands.iter().map(ToString::to_string).collect();
     // Lobes are of one band: the middle one.
     let band = brdf.bands() / 2;
-    let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", loaded.name, names[band]), thetas, band));
+    let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", file_name(path, &loaded.name), names[band]), thetas, band));
     let log = || Panel::from(log_panel(brdf.as_ref(), thetas, band));
     let albedo = || Panel::from(albedo_panel(brdf.as_ref(), &names));
     let coloured = |panel: fn(&dyn Brdf, &Tint) -> RasterPanel| -> Result<Panel, Failure> {
@@ -111,6 +111,12 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
     };
     let bytes = draw(&panels, None, format).map_err(|e| Failure::Message(e.to_string()))?;
     write_file(&arguments.output, &bytes, std::slice::from_ref(path))
+}
+
+/// A material's name without the folders of its file.
+fn file_name<'a>(argument: &str, name: &'a str) -> &'a str {
+    let folders = Path::new(argument).file_name().and_then(|n| n.to_str()).map_or(0, |n| argument.len() - n.len());
+    if argument.contains('(') { name } else { name.get(folders..).unwrap_or(name) }
 }
 
 /// Colours of bands: by the observer where all are wavelengths, else as channels.
