@@ -94,22 +94,24 @@ pub fn albedo_panel(brdf: &dyn Brdf, names: &[String]) -> CurvesPanel {
     let mut curves: Vec<NamedCurve> =
         names.iter().map(|n| NamedCurve { name: n.clone(), ..NamedCurve::default() }).collect();
     let [mut whole, mut measured] = [vec![0.0; brdf.bands()], vec![0.0; brdf.bands()]];
-    for theta in ALBEDO_DEG {
-        let incident = from_degrees(theta, 180.0);
+    let (phi, thetas) = lit_at(brdf);
+    let mut all_measured = true;
+    for theta in thetas {
+        let incident = from_degrees(theta, phi);
         brdf.albedo(incident, &mut whole);
-        match brdf.is_tabulated() {
-            true => _ = MeasuredPart(brdf).albedo(incident, &mut measured),
-            false => measured.copy_from_slice(&whole),
+        if is_covered(brdf, incident) {
+            measured.copy_from_slice(&whole);
+        } else {
+            all_measured = false;
+            MeasuredPart(brdf).albedo(incident, &mut measured);
         }
         for (curve, (whole, measured)) in curves.iter_mut().zip(whole.iter().zip(&measured)) {
             curve.points.push((theta, *measured));
             curve.dashed.push((theta, *whole));
         }
     }
-    // Where both are one but for their quadratures there is nothing to tell apart.
-    let apart = |c: &NamedCurve| c.points.iter().zip(&c.dashed).any(|(m, w)| (m.1 - w.1).abs() > 1e-3 * w.1.abs());
-    if !curves.iter().any(apart) {
-        curves.iter_mut().for_each(|c| c.points = std::mem::take(&mut c.dashed));
+    if all_measured {
+        curves.iter_mut().for_each(|c| c.dashed.clear());
     }
     CurvesPanel {
         title: "directional-hemispherical reflectance".to_owned(),
@@ -121,6 +123,24 @@ pub fn albedo_panel(brdf: &dyn Brdf, names: &[String]) -> CurvesPanel {
         level: Some(1.0),
         dashes: "with the table's guess where nothing was measured".to_owned(),
     }
+}
+
+/// The azimuth and the angles of incidence of an albedo: those at which a table was lit, where they are few.
+fn lit_at(brdf: &dyn Brdf) -> (f64, Vec<f64>) {
+    let lit = brdf.incidences_deg().unwrap_or_default();
+    let phi = lit.first().map_or(180.0, |l| l[1]);
+    let mut thetas: Vec<f64> = lit.iter().filter(|l| l[1] == phi).map(|l| l[0]).collect();
+    thetas.sort_by(f64::total_cmp);
+    thetas.dedup();
+    // One angle makes no curve.
+    if thetas.len() > 1 { (phi, thetas) } else { (180.0, ALBEDO_DEG.to_vec()) }
+}
+
+/// Whether all outgoing directions of a net were measured.
+fn is_covered(brdf: &dyn Brdf, incident: DVec3) -> bool {
+    let thetas = (0..30).map(|i| 1.5 + 3.0 * f64::from(i));
+    let mut net = thetas.flat_map(|theta| (0..36).map(move |k| from_degrees(theta, 10.0 * f64::from(k))));
+    net.all(|outgoing| brdf.is_measured(incident, outgoing))
 }
 
 /// From values per band to linear sRGB where a white diffuser is (1, 1, 1).
@@ -273,8 +293,7 @@ pub fn surface_panel(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> SurfaceP
         brdf.evaluate(incident, *direction, &mut values);
         (*direction * values[band].max(0.0).cbrt()).to_array()
     };
-    let mut rings: Vec<Vec<[f64; 3]>> =
-        directions.iter().map(|ring| ring.iter().map(&mut place).collect()).collect();
+    let mut rings: Vec<Vec<[f64; 3]>> = directions.iter().map(|ring| ring.iter().map(&mut place).collect()).collect();
     let largest = rings.iter().flatten().map(|p| DVec3::from_array(*p).length()).fold(0.0, f64::max);
     if largest > 0.0 {
         rings.iter_mut().flatten().for_each(|p| *p = p.map(|v| v / largest));

@@ -99,7 +99,7 @@ impl LobePanel {
         }
         let guesses = self.lobes.iter().flat_map(|l| &l.guessed).any(|g| g.1.is_finite());
         let note = if guesses {
-            "each relative to its peak; straight dashes: the light, other dashes: not measured, a guess"
+            "each relative to its peak; dashed: the light, and curves not measured"
         } else {
             "each lobe relative to its peak; dashed: the light"
         };

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::load::{BandArgs, MaterialArgs, Numbers, Ready, Subject, load, prepare};
+use super::load::{BandArgs, MaterialArgs, Ready, Subject, load, prepare};
+use super::numbers::{Numbers, check_lobes};
 use crate::brdf::Brdf;
 use crate::brdf::table::Channel;
 use crate::cli::notes::Notes;
@@ -15,8 +16,6 @@ use crate::plot::{Format, Panel, RasterPanel, draw};
 
 /// Wavelengths of the colours of spheres and slices, nm.
 const SPHERE_NM: (f64, f64, u32) = (400.0, 700.0, 31);
-/// Lobes in one drawing at most.
-const MOST_LOBES: usize = 6;
 
 /// What to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -66,19 +65,23 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
         return Err(Failure::Message(format!("{count} materials; expected one per picture")));
     };
     let thetas = &arguments.theta_i.0;
-    if thetas.len() > MOST_LOBES || thetas.iter().any(|t| !(0.0..90.0).contains(t)) {
-        let message = format!("--theta-i: expected 1 to {MOST_LOBES} angles from 0 to below 90 degrees");
-        return Err(Failure::Message(message));
-    }
+    check_lobes(&arguments.theta_i)?;
     let wanted = &arguments.materials.bands;
-    let loaded = load(path, wanted.format.map(Into::into));
+    let loaded = load(path, wanted.format);
     let read = loaded.subject.map_err(Failure::Message)?;
     Notes::new(&arguments.materials.materials, talk).print(&read.findings);
     let Ready { bands, brdf } = prepare(path, &read.value, wanted, &[555.0]).map_err(Failure::Message)?;
     let names: Vec<String> = bands.iter().map(ToString::to_string).collect();
     // Lobes are of one band: the middle one.
     let band = brdf.bands() / 2;
-    let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", file_name(path, &loaded.name), names[band]), thetas, band));
+    let polar = || {
+        Panel::from(lobe_panel(
+            brdf.as_ref(),
+            &format!("{}, {}", file_name(path, &loaded.name), names[band]),
+            thetas,
+            band,
+        ))
+    };
     let log = || Panel::from(log_panel(brdf.as_ref(), thetas, band));
     let albedo = || Panel::from(albedo_panel(brdf.as_ref(), &names));
     let coloured = |panel: fn(&dyn Brdf, &Tint) -> RasterPanel| -> Result<Panel, Failure> {
