@@ -106,6 +106,10 @@ pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
 /// The same of what must be a measured table.
 pub(super) fn load_table(path: &str) -> (Input, Result<Checked<Table>, String>) {
     let Loaded { input, subject, .. } = load(path, None);
+    if path != "-" && !path.contains('(') && !Path::new(path).exists() {
+        let message = format!("{path}: cannot be read: there is no such file; expected a measured table");
+        return (input, Err(message));
+    }
     let table = subject.and_then(|read| match read.value {
         Subject::Measured(file) => Ok(Checked { value: file.table, findings: read.findings }),
         Subject::Described(_) => Err(format!("{path}: found a model; expected a measured table")),
