@@ -1,5 +1,7 @@
 //! `photopic brdf` as a user meets it: descriptions, files, answers, errors, exit codes.
 
+mod common;
+
 use std::fs;
 use std::path::Path;
 
@@ -225,6 +227,88 @@ fn a_table_is_compressed_measured_and_inferred() {
     fs::write(&basis, bytes).expect("written");
     let (code, _, stderr) = compress(&["directions", "-b", &basis]);
     assert!(code == 2 && stderr.contains("set.basis: found"), "{stderr}");
+}
+
+#[test]
+fn wrong_points_and_wrong_bases_are_one_error_each() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let compress = |arguments: &[&str]| run(&[&["compress"], arguments].concat(), "");
+    let (basis, other, csv, points, out) = (path("a.basis"), path("b.basis"), path("c.csv"), path("m.csv"), path("o"));
+    let gold = "ggx(alpha=0.3, medium=Au)";
+    let train = |materials: &[&str], basis: &str| {
+        let rest = ["--resolution", "8x8x6", "-o", basis];
+        let (code, _, stderr) = compress(&[&["train"], materials, &rest[..]].concat());
+        assert_eq!(code, 0, "{stderr}");
+    };
+    train(&["lambert(reflectance=0.1)", gold, "ggx(alpha=0.2, medium=Cu)"], &basis);
+    train(&["lambert(reflectance=0.2)", gold, "beckmann(alpha=0.2, medium=Cu)"], &other);
+    let (code, _, stderr) = compress(&["encode", gold, "-b", &basis, "--csv", "-o", &csv]);
+    assert_eq!(code, 0, "{stderr}");
+    let refused = |arguments: &[&str], words: &str| {
+        let (code, _, stderr) = compress(&[arguments, &["-o", &out]].concat());
+        let errors = stderr.lines().filter(|l| l.starts_with("error")).count();
+        assert!(code == 2 && errors == 1 && stderr.contains(words), "{words}: {stderr}");
+        assert!(!Path::new(&out).exists(), "{words}");
+    };
+    refused(&["decode", &csv, "-b", &other], "c.csv:2:1: found `");
+    refused(&["decode", &csv, "-b", &csv], "c.csv: found no basis; expected a file that `brdf compress train` wrote");
+    refused(&["decode", &basis, "-b", &basis], "a.basis:");
+    refused(&["infer", gold, "-b", &basis], "found a model; expected a list of measured points");
+    let head = "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value";
+    for (rows, words) in [
+        ("30,0,30,180,0.1\n30.1,0,30.1,180,0.2\n", "in the same bin as point 1; expected one value per bin"),
+        ("30,0,30,180,much\n", "m.csv:2:"),
+        ("30,0,30\n", "m.csv:2:"),
+        ("", "m.csv:"),
+    ] {
+        fs::write(&points, format!("{head}\n{rows}")).expect("written");
+        refused(&["infer", &points, "-b", &basis], words);
+    }
+}
+
+#[test]
+fn what_was_not_measured_is_marked_in_every_drawing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A diffuser, lit at 30° and 45° and seen up to 40°.
+    let mut table = String::from("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,value\n");
+    for (lit, theta) in [30, 45].into_iter().flat_map(|lit| (0..=40).step_by(5).map(move |theta| (lit, theta))) {
+        for phi in (0..if theta > 0 { 360 } else { 1 }).step_by(15) {
+            table += &format!("{lit},0,{theta},{phi},0.1\n");
+        }
+    }
+    let (file, picture) = (folder.path().join("paint.csv"), folder.path().join("p.svg"));
+    fs::write(&file, table).expect("written");
+    let (file, picture) = (file.to_str().expect("a plain path"), picture.to_str().expect("a plain path"));
+    let model = "lambert(reflectance=0.5)";
+    for (kind, words) in [
+        ("polar", "curves not measured"),
+        ("log", "not measured: the table"),
+        ("albedo", "where nothing was measured"),
+        ("sphere", "lilac: not measured"),
+        ("lobe", "pale: not measured"),
+    ] {
+        for (material, expected) in [(file, true), (model, false)] {
+            let arguments = ["plot", material, "--kind", kind, "--theta-i", "30", "-o", picture];
+            let (code, _, stderr) = run(&arguments, "");
+            assert_eq!(code, 0, "{stderr}");
+            let svg = fs::read_to_string(picture).expect("an SVG");
+            assert_eq!(svg.contains(words), expected, "{kind} of {material}");
+            // The file's name, without its folders.
+            assert!(kind != "polar" || material == model || svg.contains(">paint.csv, "), "{kind}");
+        }
+    }
+}
+
+#[test]
+fn matrices_of_transmission_are_named_and_left_out() {
+    let Some(shared) = common::shared("brdf/test_blinds_kf.xml") else { return };
+    let (code, document, _) = run(&["info", shared.to_str().expect("a plain path"), "--json"], "");
+    let findings = json(&document)["findings"].as_array().expect("findings").clone();
+    let found = findings.iter().find(|f| f["code"] == "B106").expect("what else the file holds");
+    let message = found["message"].as_str().expect("words");
+    assert!(code == 0 && message.starts_with("Visible Reflection Front was taken"), "{message}");
+    assert!(["Transmission Front", "Transmission Back"].iter().all(|half| message.contains(half)), "{message}");
 }
 
 #[test]

@@ -190,7 +190,7 @@ fn net_thetas() -> impl Iterator<Item = f64> {
 
 /// A table without its guesses: 0 where it was not measured.
 #[derive(Debug)]
-struct MeasuredPart<'a>(&'a dyn Brdf);
+pub(crate) struct MeasuredPart<'a>(pub(crate) &'a dyn Brdf);
 
 impl Brdf for MeasuredPart<'_> {
     fn bands(&self) -> usize {

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, dvec3};
 
 use crate::brdf::Brdf;
-use crate::brdf::audit::ALBEDO_DEG;
+use crate::brdf::audit::{ALBEDO_DEG, MeasuredPart};
 use crate::brdf::coordinates::HalfDiff;
 use crate::colorimetry::observer::Observer;
 use crate::colorimetry::rgb;
@@ -29,15 +29,32 @@ fn angles(theta_i_deg: f64) -> Vec<f64> {
 }
 
 /// Values of a band in the plane of incidence.
-fn plane(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> Vec<(f64, f64)> {
-    let incident = from_degrees(theta_i_deg, 180.0);
-    let mut values = vec![0.0; brdf.bands()];
-    (angles(theta_i_deg).into_iter())
-        .map(|t| {
-            brdf.evaluate(incident, from_degrees(t.abs(), if t < 0.0 { 180.0 } else { 0.0 }), &mut values);
-            (t, values[band])
-        })
-        .collect()
+struct Plane {
+    /// NaN where it was not measured.
+    measured: Vec<(f64, f64)>,
+    /// The table's guess where it was not measured, up to the measured places beside it; NaN elsewhere.
+    guessed: Vec<(f64, f64)>,
+}
+
+impl Plane {
+    fn of(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> Self {
+        let incident = from_degrees(theta_i_deg, 180.0);
+        let mut values = vec![0.0; brdf.bands()];
+        let all: Vec<(f64, f64, bool)> = (angles(theta_i_deg).into_iter())
+            .map(|t| {
+                let outgoing = from_degrees(t.abs(), if t < 0.0 { 180.0 } else { 0.0 });
+                brdf.evaluate(incident, outgoing, &mut values);
+                (t, values[band], brdf.is_measured(incident, outgoing))
+            })
+            .collect();
+        let shown = |(t, v, _): &(f64, f64, bool), is: bool| (*t, if is { *v } else { f64::NAN });
+        let unknown = |i: usize| all.get(i).is_some_and(|a| !a.2);
+        let beside = |i: usize| unknown(i) || unknown(i + 1) || i > 0 && unknown(i - 1);
+        Self {
+            measured: all.iter().map(|a| shown(a, a.2)).collect(),
+            guessed: all.iter().enumerate().map(|(i, a)| shown(a, beside(i))).collect(),
+        }
+    }
 }
 
 /// Lobes of a band as a polar drawing.
@@ -46,7 +63,8 @@ pub fn lobe_panel(brdf: &dyn Brdf, title: &str, thetas_deg: &[f64], band: usize)
     let mut specular = vec![0.0; brdf.bands()];
     let lobes = thetas_deg.iter().map(|t| {
         brdf.specular(from_degrees(*t, 180.0), &mut specular);
-        Lobe { theta_i_deg: *t, samples: plane(brdf, *t, band), dirac: specular[band] }
+        let Plane { measured, guessed } = Plane::of(brdf, *t, band);
+        Lobe { theta_i_deg: *t, samples: measured, guessed, dirac: specular[band] }
     });
     LobePanel { title: title.to_owned(), lobes: lobes.collect(), unit: "1/sr".to_owned() }
 }
@@ -54,7 +72,10 @@ pub fn lobe_panel(brdf: &dyn Brdf, title: &str, thetas_deg: &[f64], band: usize)
 /// The same lobes over the outgoing angle, logarithmic.
 #[must_use]
 pub fn log_panel(brdf: &dyn Brdf, thetas_deg: &[f64], band: usize) -> CurvesPanel {
-    let curve = |t: &f64| NamedCurve { name: format!("light at {t}°"), points: plane(brdf, *t, band) };
+    let curve = |t: &f64| {
+        let Plane { measured, guessed } = Plane::of(brdf, *t, band);
+        NamedCurve { name: format!("light at {t}°"), points: measured, dashed: guessed }
+    };
     CurvesPanel {
         title: "plane of incidence".to_owned(),
         x_label: "outgoing angle [°], the light comes from the left".to_owned(),
@@ -63,18 +84,34 @@ pub fn log_panel(brdf: &dyn Brdf, thetas_deg: &[f64], band: usize) -> CurvesPane
         curves: thetas_deg.iter().map(curve).collect(),
         logarithmic: true,
         level: None,
+        dashes: "not measured: the table's guess".to_owned(),
     }
 }
 
-/// Albedo over the angle of incidence, a curve per band.
+/// Albedo over the angle of incidence, a curve per band. Of a table the part that was measured, and dashed what its guesses make of it.
 #[must_use]
 pub fn albedo_panel(brdf: &dyn Brdf, names: &[String]) -> CurvesPanel {
     let mut curves: Vec<NamedCurve> =
-        names.iter().map(|n| NamedCurve { name: n.clone(), points: Vec::new() }).collect();
-    let mut values = vec![0.0; brdf.bands()];
-    for theta in ALBEDO_DEG {
-        brdf.albedo(from_degrees(theta, 180.0), &mut values);
-        curves.iter_mut().zip(&values).for_each(|(c, v)| c.points.push((theta, *v)));
+        names.iter().map(|n| NamedCurve { name: n.clone(), ..NamedCurve::default() }).collect();
+    let [mut whole, mut measured] = [vec![0.0; brdf.bands()], vec![0.0; brdf.bands()]];
+    let (phi, thetas) = lit_at(brdf);
+    let mut all_measured = true;
+    for theta in thetas {
+        let incident = from_degrees(theta, phi);
+        brdf.albedo(incident, &mut whole);
+        if is_covered(brdf, incident) {
+            measured.copy_from_slice(&whole);
+        } else {
+            all_measured = false;
+            MeasuredPart(brdf).albedo(incident, &mut measured);
+        }
+        for (curve, (whole, measured)) in curves.iter_mut().zip(whole.iter().zip(&measured)) {
+            curve.points.push((theta, *measured));
+            curve.dashed.push((theta, *whole));
+        }
+    }
+    if all_measured {
+        curves.iter_mut().for_each(|c| c.dashed.clear());
     }
     CurvesPanel {
         title: "directional-hemispherical reflectance".to_owned(),
@@ -84,7 +121,26 @@ pub fn albedo_panel(brdf: &dyn Brdf, names: &[String]) -> CurvesPanel {
         curves,
         logarithmic: false,
         level: Some(1.0),
+        dashes: "with the table's guess where nothing was measured".to_owned(),
     }
+}
+
+/// The azimuth and the angles of incidence of an albedo: those at which a table was lit, where they are few.
+fn lit_at(brdf: &dyn Brdf) -> (f64, Vec<f64>) {
+    let lit = brdf.incidences_deg().unwrap_or_default();
+    let phi = lit.first().map_or(180.0, |l| l[1]);
+    let mut thetas: Vec<f64> = lit.iter().filter(|l| l[1] == phi).map(|l| l[0]).collect();
+    thetas.sort_by(f64::total_cmp);
+    thetas.dedup();
+    // One angle makes no curve.
+    if thetas.len() > 1 { (phi, thetas) } else { (180.0, ALBEDO_DEG.to_vec()) }
+}
+
+/// Whether all outgoing directions of a net were measured.
+fn is_covered(brdf: &dyn Brdf, incident: DVec3) -> bool {
+    let thetas = (0..30).map(|i| 1.5 + 3.0 * f64::from(i));
+    let mut net = thetas.flat_map(|theta| (0..36).map(move |k| from_degrees(theta, 10.0 * f64::from(k))));
+    net.all(|outgoing| brdf.is_measured(incident, outgoing))
 }
 
 /// From values per band to linear sRGB where a white diffuser is (1, 1, 1).
@@ -133,7 +189,7 @@ impl Tint {
 }
 
 /// A sphere seen from afar, lit by a small lamp from the upper right behind the eye, in some ambient light from everywhere (by the
-/// albedo, so that mirrors are not black).
+/// albedo, so that mirrors are not black). Pixels for whose directions a table was not measured are [`UNMEASURED`].
 #[must_use]
 pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
     const SIDE: u32 = 320;
@@ -146,6 +202,7 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
             values.clone()
         })
         .to_vec();
+    let mut guesses = false;
     let mut pixels = Vec::with_capacity(3 * (SIDE * SIDE) as usize);
     for i in 0..SIDE * SIDE {
         let coordinate = |n: u32| 2.1 * (f64::from(n) + 0.5) / f64::from(SIDE) - 1.05;
@@ -158,8 +215,13 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         let normal = dvec3(x, y, rest.sqrt());
         let (t, b) = tangents(normal);
         let local = |d: DVec3| dvec3(d.dot(t), d.dot(b), d.dot(normal));
-        let incident = local(light);
-        brdf.evaluate(incident, local(DVec3::Z), &mut values);
+        let (incident, outgoing) = (local(light), local(DVec3::Z));
+        if incident.z > 0.0 && !brdf.is_measured(incident, outgoing) {
+            guesses = true;
+            pixels.extend(UNMEASURED);
+            continue;
+        }
+        brdf.evaluate(incident, outgoing, &mut values);
         let theta = normal.z.acos().to_degrees();
         let above = ALBEDO_DEG.partition_point(|a| *a < theta).clamp(1, ALBEDO_DEG.len() - 1);
         let (low, high) = (ALBEDO_DEG[above - 1], ALBEDO_DEG[above]);
@@ -173,7 +235,11 @@ pub fn sphere_panel(brdf: &dyn Brdf, tint: &Tint) -> RasterPanel {
         title: "lit sphere".to_owned(),
         side: SIDE,
         pixels,
-        caption: "a small lamp, and a little light from everywhere".to_owned(),
+        caption: if guesses {
+            "a small lamp, a little light from everywhere; lilac: not measured".to_owned()
+        } else {
+            "a small lamp, and a little light from everywhere".to_owned()
+        },
     }
 }
 
@@ -215,27 +281,33 @@ pub const UNMEASURED: [u8; 3] = [214, 214, 236];
 pub fn surface_panel(brdf: &dyn Brdf, theta_i_deg: f64, band: usize) -> SurfacePanel {
     let incident = from_degrees(theta_i_deg, 180.0);
     let mut values = vec![0.0; brdf.bands()];
-    let mut rings: Vec<Vec<[f64; 3]>> = (0..=44)
+    let directions: Vec<Vec<DVec3>> = (0..=44)
         .map(|i| {
             let theta = (2.0 * f64::from(i)).max(0.01);
-            (0..90)
-                .map(|k| {
-                    let direction = from_degrees(theta, 4.0 * f64::from(k));
-                    brdf.evaluate(incident, direction, &mut values);
-                    (direction * values[band].max(0.0).cbrt()).to_array()
-                })
-                .collect()
+            (0..90).map(|k| from_degrees(theta, 4.0 * f64::from(k))).collect()
         })
         .collect();
+    let measured: Vec<Vec<bool>> =
+        directions.iter().map(|ring| ring.iter().map(|d| brdf.is_measured(incident, *d)).collect()).collect();
+    let mut place = |direction: &DVec3| {
+        brdf.evaluate(incident, *direction, &mut values);
+        (*direction * values[band].max(0.0).cbrt()).to_array()
+    };
+    let mut rings: Vec<Vec<[f64; 3]>> = directions.iter().map(|ring| ring.iter().map(&mut place).collect()).collect();
     let largest = rings.iter().flatten().map(|p| DVec3::from_array(*p).length()).fold(0.0, f64::max);
     if largest > 0.0 {
         rings.iter_mut().flatten().for_each(|p| *p = p.map(|v| v / largest));
     }
+    let mut caption = "radius: cube root of the BRDF, relative to the largest".to_owned();
+    if measured.iter().flatten().any(|m| !m) {
+        caption += "; pale: not measured";
+    }
     SurfacePanel {
         title: format!("lobe, light at {theta_i_deg}°"),
         rings,
+        measured,
         light: incident.to_array(),
-        caption: "radius: cube root of the BRDF, relative to the largest".to_owned(),
+        caption,
     }
 }
 

@@ -5,6 +5,8 @@ use super::font;
 use super::lobe::COLOURS;
 use super::sheet::{Align, DARK, FRAME, GRID, Ink, Point, Rect, Sheet};
 
+/// Lengths of dash and gap of what was not measured.
+pub(super) const DASHES: [f64; 2] = [4.0, 3.0];
 /// Decades shown at most on a logarithmic scale.
 const DECADES: f64 = 8.0;
 
@@ -13,8 +15,10 @@ const DECADES: f64 = 8.0;
 pub struct NamedCurve {
     /// Its name in the legend.
     pub name: String,
-    /// Points in the order in which they are joined.
+    /// Points in the order in which they are joined; NaN breaks the line.
     pub points: Vec<(f64, f64)>,
+    /// Points of the same curve that are drawn dashed.
+    pub dashed: Vec<(f64, f64)>,
 }
 
 /// Curves over one axis.
@@ -34,17 +38,20 @@ pub struct CurvesPanel {
     pub logarithmic: bool,
     /// A level to mark, such as an albedo of 1.
     pub level: Option<f64>,
+    /// What dashes stand for: in the legend where a curve has some.
+    pub dashes: String,
 }
 
 impl CurvesPanel {
     pub(super) fn draw(&self, sheet: &mut Sheet, area: Rect) {
         let top = axis::title(sheet, area, &self.title);
-        let points = || self.curves.iter().flat_map(|c| c.points.iter().copied());
+        let points = || self.curves.iter().flat_map(|c| c.points.iter().chain(&c.dashed).copied());
         let (left, right) = points().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.0), b.max(p.0)));
         if left >= right {
             return;
         }
-        let legend = 20.0 * self.curves.len() as f64;
+        let has_dashes = self.curves.iter().flat_map(|c| &c.dashed).any(|p| p.1.is_finite());
+        let legend = 20.0 * (self.curves.len() + usize::from(has_dashes)) as f64;
         let plot = Rect::new(area.x0 + MARGIN + 66.0, top + legend, area.x1 - MARGIN - 8.0, area.y1 - MARGIN - BELOW);
         let x = Scale::new(left, right, plot.x0, plot.x1);
         let highest = points().map(|p| p.1).chain(self.level).filter(|v| v.is_finite()).fold(0.0_f64, f64::max);
@@ -84,20 +91,23 @@ impl CurvesPanel {
         }
         for (i, curve) in self.curves.iter().enumerate() {
             let ink = Ink::rgb(COLOURS[i % COLOURS.len()]);
-            let mut run: Vec<Point> = Vec::new();
-            for &(px, py) in &curve.points {
-                let value = shown(py);
-                if value.is_finite() && value >= low {
-                    run.push((x.at(px), y.at(value)));
-                } else {
-                    sheet.stroke(std::mem::take(&mut run), 2.0, ink);
-                }
-            }
-            sheet.stroke(run, 2.0, ink);
+            let runs = |points: &[(f64, f64)]| -> Vec<Vec<Point>> {
+                let place = |p: &(f64, f64)| (x.at(p.0), y.at(shown(p.1)));
+                let seen = |p: &(f64, f64)| shown(p.1).is_finite() && shown(p.1) >= low;
+                points.split(|p| !seen(p)).map(|run| run.iter().map(place).collect()).collect()
+            };
+            runs(&curve.dashed).iter().for_each(|run| sheet.dashed(run, &DASHES, 1.5, ink));
+            runs(&curve.points).into_iter().for_each(|run| sheet.stroke(run, 2.0, ink));
             let line = top + 6.0 + 20.0 * i as f64;
             sheet.line((plot.x0, line), (plot.x0 + 26.0, line), 3.0, ink);
             let name = font::fit(&curve.name, TICK_TEXT, plot.width() - 40.0);
             sheet.text((plot.x0 + 34.0, line + 0.36 * TICK_TEXT), &name, TICK_TEXT, DARK, Align::Start);
+        }
+        if has_dashes {
+            let line = top + 6.0 + 20.0 * self.curves.len() as f64;
+            sheet.dashed(&[(plot.x0, line), (plot.x0 + 26.0, line)], &DASHES, 1.5, DARK);
+            let words = font::fit(&self.dashes, TICK_TEXT, plot.width() - 40.0);
+            sheet.text((plot.x0 + 34.0, line + 0.36 * TICK_TEXT), &words, TICK_TEXT, DARK, Align::Start);
         }
         sheet.frame(plot, 1.0, FRAME);
     }

@@ -1,6 +1,7 @@
 //! The lobe panel: reflection in the plane of incidence as a polar drawing, radius ∝ value.
 
 use super::axis::{self, AXIS_TEXT, MARGIN, TICK_TEXT};
+use super::curves::DASHES;
 use super::font;
 use super::sheet::{Align, DARK, FRAME, GRID, Ink, Point, Rect, SOFT, Sheet};
 
@@ -13,13 +14,15 @@ pub(super) const COLOURS: [[u8; 3]; 6] =
 pub struct Lobe {
     /// Angle of incidence in degrees: the light comes from the left.
     pub theta_i_deg: f64,
-    /// Outgoing angle in degrees, −90 (towards the light) to 90, and value.
+    /// Outgoing angle in degrees, −90 (towards the light) to 90, and value; NaN where it was not measured.
     pub samples: Vec<(f64, f64)>,
+    /// Angle and guess where nothing was measured, drawn dashed; NaN elsewhere.
+    pub guessed: Vec<(f64, f64)>,
     /// Reflectance of a Dirac lobe in the mirror direction, 0 where there is none.
     pub dirac: f64,
 }
 
-/// Lobes over the surface, each relative to its own peak, which is written beside it.
+/// Lobes over the surface, each relative to its own measured peak, which is written beside it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LobePanel {
     /// Above the drawing.
@@ -56,15 +59,26 @@ impl LobePanel {
         sheet.line(at(-90.0, 1.06), at(90.0, 1.06), 2.0, FRAME);
         for (i, lobe) in self.lobes.iter().enumerate() {
             let ink = Ink::rgb(COLOURS[i % COLOURS.len()]);
-            let peak = lobe.samples.iter().fold(0.0_f64, |m, s| m.max(s.1));
+            let largest = |samples: &[(f64, f64)]| samples.iter().fold(0.0_f64, |m, s| m.max(s.1));
+            let (measured_peak, guessed_peak) = (largest(&lobe.samples), largest(&lobe.guessed));
+            let peak = if measured_peak > 0.0 { measured_peak } else { guessed_peak };
             // The light, from outside to the surface.
             sheet.dashed(&[at(-lobe.theta_i_deg, 1.0), at(-lobe.theta_i_deg, 0.0)], &[6.0, 4.0], 1.5, ink);
             if peak > 0.0 {
-                let mut outline = vec![centre];
-                outline.extend(lobe.samples.iter().map(|(t, v)| at(*t, v.max(0.0) / peak)));
-                outline.push(centre);
-                sheet.fill(outline.clone(), ink.alpha(0.12));
-                sheet.stroke(outline, 2.0, ink);
+                let runs = |samples: &[(f64, f64)]| -> Vec<Vec<Point>> {
+                    // A guess above the peak is cut at the border of the drawing.
+                    let place = |(t, v): &(f64, f64)| at(*t, (v.max(0.0) / peak).min(1.0));
+                    let runs = samples.split(|s| s.1.is_nan()).filter(|run| !run.is_empty());
+                    runs.map(|run| run.iter().map(place).collect()).collect()
+                };
+                for run in runs(&lobe.samples) {
+                    let closed = std::iter::once(centre).chain(run.iter().copied()).chain([centre]).collect();
+                    sheet.fill(closed, ink.alpha(0.12));
+                    sheet.stroke(run, 2.0, ink);
+                }
+                for run in runs(&lobe.guessed) {
+                    sheet.dashed(&run, &DASHES, 1.5, ink);
+                }
             }
             if lobe.dirac > 0.0 {
                 sheet.line(at(0.0, 0.0), at(lobe.theta_i_deg, 1.0), 2.0, ink);
@@ -73,15 +87,22 @@ impl LobePanel {
             let x = centre.0 - radius;
             sheet.line((x, y - 5.0), (x + 26.0, y - 5.0), 3.0, ink);
             let mut text = format!("light at {}°", lobe.theta_i_deg);
-            if peak > 0.0 {
+            if measured_peak > 0.0 {
                 text += &format!(", peak {} {}", axis_number(peak), self.unit);
+            } else if peak > 0.0 {
+                text += ", not measured";
             }
             if lobe.dirac > 0.0 {
                 text += &format!(", Dirac lobe of {}", axis_number(lobe.dirac));
             }
             sheet.text((x + 36.0, y), &font::fit(&text, AXIS_TEXT, 2.0 * radius), AXIS_TEXT, DARK, Align::Start);
         }
-        let note = "each lobe relative to its peak; dashed: the light";
+        let guesses = self.lobes.iter().flat_map(|l| &l.guessed).any(|g| g.1.is_finite());
+        let note = if guesses {
+            "each relative to its peak; dashed: the light, and curves not measured"
+        } else {
+            "each lobe relative to its peak; dashed: the light"
+        };
         let y = centre.1 + 40.0 + 22.0 * self.lobes.len() as f64;
         sheet.text((centre.0 - radius, y), &font::fit(note, TICK_TEXT, 2.0 * radius), TICK_TEXT, SOFT, Align::Start);
     }

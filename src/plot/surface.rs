@@ -14,10 +14,25 @@ pub struct SurfacePanel {
     pub title: String,
     /// Rings from the normal to the horizon; each has the same number of places around, in units of the largest radius.
     pub rings: Vec<Vec<Place>>,
+    /// Which of these places were measured: a facet that has another one is drawn pale.
+    pub measured: Vec<Vec<bool>>,
     /// Direction towards the light.
     pub light: Place,
     /// Below the drawing.
     pub caption: String,
+}
+
+/// Colours of a facet and of its edge, in full light.
+type Tones = ([f64; 3], [f64; 3]);
+const MEASURED: Tones = ([70.0, 150.0, 235.0], [40.0, 100.0, 180.0]);
+const GUESSED: Tones = ([214.0, 214.0, 236.0], [170.0, 170.0, 200.0]);
+
+/// A piece of the lobe.
+struct Facet {
+    corners: [Place; 4],
+    /// How much light it gets from the eye's side.
+    shade: f64,
+    measured: bool,
 }
 
 /// Turned about the vertical by this angle, and seen from this height.
@@ -47,17 +62,17 @@ impl SurfacePanel {
             sheet.stroke(circle(r), 1.0, GRID);
         }
         let facets = self.facets();
-        for (corners, shade) in facets {
+        for Facet { corners, shade, measured } in facets {
             let outline: Vec<Point> = corners.iter().map(|p| place(*p)).collect();
             let tone = |full: f64| {
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
                 let level = (full * (0.35 + 0.65 * shade)).clamp(0.0, 255.0) as u8;
                 level
             };
-            let ink = Ink::rgb([tone(70.0), tone(150.0), tone(235.0)]);
-            sheet.fill(outline.clone(), ink);
+            let (face, edge) = if measured { MEASURED } else { GUESSED };
+            sheet.fill(outline.clone(), Ink::rgb(face.map(tone)));
             let closed = outline.iter().copied().chain(outline.first().copied()).collect();
-            sheet.stroke(closed, 0.4, Ink::rgb([tone(40.0), tone(100.0), tone(180.0)]));
+            sheet.stroke(closed, 0.4, Ink::rgb(edge.map(tone)));
         }
         let end = self.light.map(|v| 1.05 * v);
         sheet.dashed(&[place(end), place([0.0; 3])], &[7.0, 4.0], 2.0, Ink::rgb([213, 94, 0]));
@@ -68,19 +83,21 @@ impl SurfacePanel {
         sheet.text((centre.0, area.y1 - MARGIN), &caption, AXIS_TEXT, SOFT, Align::Middle);
     }
 
-    /// The facets between neighbouring places, farthest first, and how much light each gets from the eye's side.
-    fn facets(&self) -> Vec<([Place; 4], f64)> {
+    /// The facets between neighbouring places, farthest first.
+    fn facets(&self) -> Vec<Facet> {
         let mut out = Vec::new();
-        for rings in self.rings.windows(2) {
+        for (rings, known) in self.rings.windows(2).zip(self.measured.windows(2)) {
             let around = rings[0].len().min(rings[1].len());
             for i in 0..around {
                 let j = (i + 1) % around;
-                out.push([rings[0][i], rings[0][j], rings[1][j], rings[1][i]]);
+                let corners = [rings[0][i], rings[0][j], rings[1][j], rings[1][i]];
+                let measured = known[0][i] && known[0][j] && known[1][j] && known[1][i];
+                out.push(Facet { corners, shade: shade(&corners), measured });
             }
         }
-        let depth = |c: &[Place; 4]| c.iter().map(|p| seen(*p)[2]).sum::<f64>();
+        let depth = |f: &Facet| f.corners.iter().map(|p| seen(*p)[2]).sum::<f64>();
         out.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-        out.into_iter().map(|c| (c, shade(&c))).collect()
+        out
     }
 }
 

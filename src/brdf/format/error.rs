@@ -1,5 +1,6 @@
 //! Why a BRDF file was refused: where, what was found, what was expected.
 
+use super::Format;
 use crate::brdf::table;
 use crate::finding::Located;
 
@@ -11,7 +12,7 @@ pub enum ErrorKind {
     #[error("found an empty input; expected a BRDF table")]
     Empty,
     /// None of the formats.
-    #[error("found {found}; expected a BRDF table (MERL, RGL, UTIA, ASTM, Zemax, Klems XML, ALTA, CSV)")]
+    #[error("found {found}; expected a BRDF table ({})", formats())]
     Unknown {
         /// What it looks like.
         found: String,
@@ -42,6 +43,12 @@ pub enum ErrorKind {
         /// For what.
         what: String,
     },
+    /// It cannot be read.
+    #[error("cannot be read: {message}; expected a BRDF table")]
+    Io {
+        /// The system's words.
+        message: String,
+    },
     /// Broken XML.
     #[error("found broken XML ({message}); expected a well-formed document")]
     Xml {
@@ -55,6 +62,11 @@ pub enum ErrorKind {
 
 /// An [`ErrorKind`] with its place and a hint.
 pub type Error = Located<ErrorKind>;
+
+/// The formats that are read, by their names.
+fn formats() -> String {
+    Format::ALL.map(|f| f.to_string()).join(", ")
+}
 
 impl ErrorKind {
     /// [`ErrorKind::Unexpected`].

@@ -45,6 +45,21 @@ impl Format {
     /// All of them.
     pub const ALL: [Self; 8] =
         [Self::Merl, Self::Rgl, Self::Utia, Self::Astm, Self::Zemax, Self::Klems, Self::Alta, Self::Csv];
+
+    /// What a user calls it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Merl => "merl",
+            Self::Rgl => "rgl",
+            Self::Utia => "utia",
+            Self::Astm => "astm",
+            Self::Zemax => "zemax",
+            Self::Klems => "klems",
+            Self::Alta => "alta",
+            Self::Csv => "csv",
+        }
+    }
 }
 
 impl fmt::Display for Format {

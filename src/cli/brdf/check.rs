@@ -7,6 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::load::{MaterialArgs, Subject, load, prepare};
+use super::numbers::{check_half_angle, check_theta};
 use crate::brdf::Brdf;
 use crate::brdf::audit::{Limits, audit};
 use crate::cli::notes::Notes;
@@ -86,7 +87,7 @@ impl Run<'_> {
     ) -> Result<(), Failure> {
         let wanted = &self.materials.bands;
         for argument in &self.materials.materials {
-            let loaded = load(argument, wanted.format.map(Into::into));
+            let loaded = load(argument, wanted.format);
             self.envelope.input(loaded.input);
             let prepared = (loaded.subject)
                 .and_then(|read| prepare(argument, &read.value, wanted, self.default_nm).map(|ready| (read, ready)));
@@ -156,13 +157,9 @@ pub(super) fn check(arguments: &CheckArgs, talk: Talk) -> Result<(), Failure> {
 }
 
 pub(super) fn info(arguments: &InfoArgs, talk: Talk) -> Result<(), Failure> {
-    let within = |name: &str, v: f64, low: f64| {
-        let message = format!("--{name} is {v}; expected an angle from {low} to 90 degrees");
-        if (low..=90.0).contains(&v) { Ok(()) } else { Err(Failure::Message(message)) }
-    };
-    within("theta-i", arguments.theta_i, 0.0)?;
-    within("theta-o", arguments.theta_o, 0.0)?;
-    within("half-angle", arguments.half_angle, 0.001)?;
+    check_theta("theta-i", arguments.theta_i)?;
+    check_theta("theta-o", arguments.theta_o)?;
+    check_half_angle("half-angle", arguments.half_angle)?;
     let nine = report::Nine {
         theta_i_deg: arguments.theta_i,
         theta_o_deg: arguments.theta_o,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::load::{BandArgs, Bins, Numbers, Subject, load, on_bands, prepare};
+use super::load::{BandArgs, Subject, load, on_bands, prepare};
+use super::numbers::{Bins, Numbers, check_theta_above};
 use crate::brdf::Brdf;
 use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::{Net, bins, nodes, sampled};
@@ -109,9 +110,8 @@ impl ConvertArgs {
             );
         }
         for (name, list) in self.net_lists() {
-            let theta = name.starts_with("theta");
-            if let Some(v) = list.0.iter().find(|v| theta && !(0.0..90.0).contains(*v)) {
-                return refuse(format!("--{name} is {v}; expected 0 to below 90 degrees from the normal"));
+            if name.starts_with("theta") {
+                list.0.iter().try_for_each(|theta| check_theta_above(name, *theta))?;
             }
             if let Some(v) = list.0.iter().enumerate().find(|(i, v)| list.0[..*i].contains(v)).map(|(_, v)| v) {
                 return refuse(format!("--{name} has {v} twice; expected each angle once"));
@@ -185,7 +185,7 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
     })?;
     arguments.check(target)?;
     let inputs = std::slice::from_ref(path);
-    let loaded = load(path, arguments.bands.format.map(Into::into));
+    let loaded = load(path, arguments.bands.format);
     let Checked { value: subject, findings } = loaded.subject.map_err(Failure::Message)?;
     let notes = Notes::new(inputs, talk);
     notes.print(&findings);

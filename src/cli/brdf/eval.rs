@@ -7,7 +7,8 @@ use clap::Args;
 use serde_json::json;
 
 use super::check::Run;
-use super::load::{MaterialArgs, Numbers};
+use super::load::MaterialArgs;
+use super::numbers::{Numbers, check_theta};
 use crate::brdf::audit::Geometry;
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
@@ -98,10 +99,8 @@ fn geometries(a: &EvalArgs) -> Result<Vec<Geometry>, Failure> {
         let message = format!("{count} directions were asked for; expected at most {MOST_DIRECTIONS}");
         return Err(Failure::Message(message));
     }
-    for theta in a.theta_i.0.iter().chain(&a.theta_o.0) {
-        if !(0.0..=90.0).contains(theta) {
-            return Err(Failure::Message(format!("θ is {theta}; expected 0 to 90 degrees from the normal")));
-        }
+    for (option, thetas) in [("theta-i", &a.theta_i), ("theta-o", &a.theta_o)] {
+        thetas.0.iter().try_for_each(|theta| check_theta(option, *theta))?;
     }
     let mut out = Vec::with_capacity(count);
     for &phi_i_deg in &a.phi_i.0 {

@@ -1,26 +1,24 @@
 //! `brdf fit`: models fitted to measured tables and compared.
 
-use std::fs;
-use std::io::{self, Read, Write};
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use sha2::{Digest, Sha256};
 
-use super::load::Numbers;
+use super::load::load_table;
+use super::numbers::{Numbers, check_lobes};
 use super::plot::format_of;
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Samples, Scope, Selection};
-use crate::brdf::format;
 use crate::brdf::table::Table;
 use crate::cli::notes::Notes;
 use crate::cli::output::{Sink, write_file};
 use crate::cli::{Failure, Talk};
-use crate::finding::{Finding, Location};
+use crate::finding::{Checked, Finding, Location};
 use crate::plot::brdf_fit::{lobes_panel, scatter_panel};
 use crate::plot::{Panel, draw};
 use crate::report::brdf_fit as report;
-use crate::report::envelope::{Envelope, Input};
+use crate::report::envelope::Envelope;
 
 /// What is minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -48,7 +46,7 @@ enum Weights {
 #[derive(Debug, Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct FitArgs {
-    /// Measured tables: MERL, RGL, UTIA, ASTM, Zemax, Klems, ALTA, CSV of points; `-` is standard input.
+    /// Measured tables of any format that `brdf info` reads; `-` is standard input.
     #[arg(required = true, value_name = "DATA")]
     data: Vec<String>,
     /// A model with open parameters; several are compared.
@@ -107,9 +105,6 @@ const EXAMPLES: &str = "Examples:
   photopic brdf fit points.csv -m 'lambert + ?*ward(ks=1)' --metric log -o paint.toml --plot paint.svg
   photopic brdf eval paint.toml";
 
-/// Lobes in one drawing at most.
-const MOST_LOBES: usize = 6;
-
 impl FitArgs {
     fn options(&self) -> Options {
         let metric = match self.metric {
@@ -151,36 +146,8 @@ impl FitArgs {
         if self.data.len() > 1 && (self.output.is_some() || self.plot.is_some()) {
             return refuse(format!("{} tables; expected one with -o or --plot", self.data.len()));
         }
-        if self.theta_i.0.len() > MOST_LOBES || self.theta_i.0.iter().any(|t| !(0.0..90.0).contains(t)) {
-            return refuse(format!("--theta-i: expected 1 to {MOST_LOBES} angles from 0 to below 90 degrees"));
-        }
-        Ok(())
+        check_lobes(&self.theta_i)
     }
-}
-
-/// A table, or why there is none; with the findings of its reader.
-struct Opened {
-    input: Input,
-    table: Result<(Table, Vec<Finding>), String>,
-}
-
-fn open(path: &str) -> Opened {
-    let bytes = if path == "-" {
-        let mut bytes = Vec::new();
-        io::stdin().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        fs::read(path)
-    };
-    let mut input = Input { path: path.to_owned(), sha256: None };
-    let table = match bytes {
-        Err(error) => Err(format!("{path}: cannot be read: {error}; expected a measured table")),
-        Ok(bytes) => {
-            input.sha256 = Some(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect());
-            let read = format::open(&bytes, None).map_err(|e| e.in_file(path).to_string());
-            read.map(|file| (file.value.table, file.findings))
-        }
-    };
-    Opened { input, table }
 }
 
 pub(super) fn fit(arguments: &FitArgs, talk: Talk) -> Result<(), Failure> {
@@ -195,10 +162,10 @@ pub(super) fn fit(arguments: &FitArgs, talk: Talk) -> Result<(), Failure> {
     table_out.write_record(report::COLUMNS).map_err(wrong)?;
     let mut plain = String::new();
     for path in &arguments.data {
-        let opened = open(path);
-        envelope.input(opened.input);
+        let (input, table) = load_table(path);
+        envelope.input(input);
         let place = || Location::default().in_file(path);
-        let samples = opened.table.and_then(|(table, findings)| {
+        let samples = table.and_then(|Checked { value: table, findings }| {
             let samples = Samples::new(&table, &selection).map_err(|e| format!("{path}: {e}"))?;
             Ok((table, findings, samples))
         });

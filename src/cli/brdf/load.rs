@@ -1,19 +1,23 @@
 //! Materials from the command line: descriptions, files that hold one, and measured tables.
 
-use std::fs;
-use std::io::{self, Read};
+use std::fs::{self, File};
+use std::io::{self, Read, Seek};
 use std::path::Path;
-use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use sha2::{Digest, Sha256};
 
+use super::numbers::Numbers;
 use crate::brdf::Brdf;
 use crate::brdf::description::{Bands, Error, Material, toml};
-use crate::brdf::format::{self, File, Format};
-use crate::brdf::table::{Channel, Resolution, Table};
+use crate::brdf::format::{self, Format, merl};
+use crate::brdf::table::{Channel, Table};
 use crate::finding::{Checked, Finding};
 use crate::report::envelope::Input;
+
+/// Bytes of a checksum's file that are read together.
+const BLOCK: usize = 1 << 17;
 
 /// Where the materials come from and on which bands they are wanted.
 #[derive(Debug, Args)]
@@ -22,8 +26,7 @@ pub(super) struct MaterialArgs {
     ///
     /// Models: lambert, oren-nayar, mirror, dielectric, conductor, phong, blinn-phong, ward, ashikhmin-shirley, ggx,
     /// beckmann, blinn, abc, sgd; `0.3*MODEL(…) + MODEL(…)` is a sum. A wrong parameter is answered with the model's list of
-    /// them, and `brdf info` prints it. Tables: MERL, RGL, UTIA, ASTM E1392, Zemax, Klems XML, ALTA, CSV, told apart by their
-    /// content.
+    /// them, and `brdf info` prints it. Tables: the formats of `--format`, told apart by their content.
     #[arg(required = true, value_name = "MATERIAL")]
     pub materials: Vec<String>,
     #[command(flatten)]
@@ -41,100 +44,15 @@ pub(super) struct BandArgs {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "wavelength")]
     pub channels: Option<Vec<String>>,
     /// The format of table files, where their content does not say it.
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub format: Option<FormatName>,
+    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    pub format: Option<Format>,
 }
 
-/// Formats by the names of the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum FormatName {
-    /// MERL `.binary`.
-    Merl,
-    /// RGL `.bsdf` tensor file.
-    Rgl,
-    /// UTIA `.bin`.
-    Utia,
-    /// ASTM E1392, E2387.
-    Astm,
-    /// Zemax `.bsdf`.
-    Zemax,
-    /// WINDOW and Radiance XML.
-    Klems,
-    /// ALTA, text or binary.
-    Alta,
-    /// CSV of points.
-    Csv,
-}
-
-impl From<FormatName> for Format {
-    fn from(name: FormatName) -> Self {
-        match name {
-            FormatName::Merl => Self::Merl,
-            FormatName::Rgl => Self::Rgl,
-            FormatName::Utia => Self::Utia,
-            FormatName::Astm => Self::Astm,
-            FormatName::Zemax => Self::Zemax,
-            FormatName::Klems => Self::Klems,
-            FormatName::Alta => Self::Alta,
-            FormatName::Csv => Self::Csv,
-        }
-    }
-}
-
-/// A list of numbers: `0,30,60` or `0:80:10`.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Numbers(pub Vec<f64>);
-
-/// Most numbers that a range may have.
-const MOST: f64 = 100_000.0;
-
-impl FromStr for Numbers {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |s: &str| {
-            let parsed = s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-            parsed.ok_or_else(|| format!("found `{s}`; expected a number, a list `0,30,60` or a range `0:80:10`"))
-        };
-        let mut out = Vec::new();
-        for item in text.split(',') {
-            match item.split(':').collect::<Vec<_>>()[..] {
-                [one] => out.push(number(one)?),
-                [low, high, step] => {
-                    let (low, high, step) = (number(low)?, number(high)?, number(step)?);
-                    let steps = ((high - low) / step + 1e-9).floor();
-                    if !(0.0..MOST).contains(&steps) {
-                        return Err(format!("found `{item}`; expected a range from low to high by a step above 0"));
-                    }
-                    let mut i = 0.0;
-                    while i <= steps {
-                        out.push(low + i * step);
-                        i += 1.0;
-                    }
-                }
-                _ => return Err(format!("found `{item}`; expected a range `low:high:step`")),
-            }
-        }
-        Ok(Self(out))
-    }
-}
-
-/// Numbers of bins as a user writes them: `90x90x180`.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bins(pub Resolution);
-
-impl FromStr for Bins {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Option<Vec<usize>> = text.split(['x', '×', ',']).map(|n| n.trim().parse().ok()).collect();
-        match numbers.as_deref() {
-            Some(&[theta_h @ 1..=180, theta_d @ 1..=180, phi_d @ 1..=360]) => {
-                Ok(Self(Resolution { theta_h, theta_d, phi_d }))
-            }
-            _ => Err(format!("found `{text}`; expected bins in θh, θd and φd such as 90x90x180, at most 180x180x360")),
-        }
-    }
+/// Formats by their names.
+fn formats() -> impl TypedValueParser<Value = Format> {
+    let names = Format::ALL.map(|f| PossibleValue::new(f.name()).help(f.to_string()));
+    let of_name = |name: String| Format::ALL.into_iter().find(|f| f.name() == name);
+    PossibleValuesParser::new(names).map(move |name| of_name(name).expect("one of the names above"))
 }
 
 /// What an argument stands for.
@@ -143,7 +61,7 @@ pub(super) enum Subject {
     /// A material in words.
     Described(Material),
     /// A measured table.
-    Measured(Box<File>),
+    Measured(Box<format::File>),
 }
 
 /// A material read.
@@ -155,8 +73,10 @@ pub(super) struct Loaded {
     pub subject: Result<Checked<Subject>, String>,
 }
 
+/// Reads a material: a measured table, a description in a file, or the description itself.
 pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
     let mut input = Input { path: argument.to_owned(), sha256: None };
+    let mut name = argument.to_owned();
     let is_file = argument == "-" || Path::new(argument).exists();
     if !is_file {
         let subject = if argument.contains('(') {
@@ -166,23 +86,87 @@ pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
             let hint = "expected a file, or a description such as 'lambert(reflectance=0.5)'";
             Err(format!("{argument}: there is no such file; {hint}"))
         };
-        return Loaded { name: argument.to_owned(), input, subject };
+        return Loaded { name, input, subject };
     }
-    let bytes = if argument == "-" {
-        let mut bytes = Vec::new();
-        io::stdin().read_to_end(&mut bytes).map(|_| bytes)
-    } else {
-        fs::read(argument)
-    };
-    let mut name = argument.to_owned();
-    let subject = match bytes {
+    if format.is_none_or(|f| f == Format::Merl)
+        && let Some(loaded) = merl_file(argument)
+    {
+        return loaded;
+    }
+    let subject = match bytes_of(argument) {
         Err(error) => Err(format!("{argument}: cannot be read: {error}; expected a material file or a BRDF table")),
         Ok(bytes) => {
-            input.sha256 = Some(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect());
+            input.sha256 = Some(hex(&bytes));
             of_bytes(argument, &bytes, format, &mut name)
         }
     };
     Loaded { name, input, subject }
+}
+
+/// The same of what must be a measured table.
+pub(super) fn load_table(path: &str) -> (Input, Result<Checked<Table>, String>) {
+    let Loaded { input, subject, .. } = load(path, None);
+    if path != "-" && !path.contains('(') && !Path::new(path).exists() {
+        let message = format!("{path}: cannot be read: there is no such file; expected a measured table");
+        return (input, Err(message));
+    }
+    let table = subject.and_then(|read| match read.value {
+        Subject::Measured(file) => Ok(Checked { value: file.table, findings: read.findings }),
+        Subject::Described(_) => Err(format!("{path}: found a model; expected a measured table")),
+    });
+    (input, table)
+}
+
+/// A file's bytes, `-` being standard input.
+pub(super) fn bytes_of(argument: &str) -> io::Result<Vec<u8>> {
+    if argument != "-" {
+        return fs::read(argument);
+    }
+    let mut bytes = Vec::new();
+    io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+}
+
+/// SHA-256 of bytes, hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// A MERL file, the largest there are, is read block by block while another core computes its checksum; `None` for any other.
+fn merl_file(path: &str) -> Option<Loaded> {
+    // Before it is opened: a pipe can be opened but once.
+    let length = fs::metadata(path).ok().filter(|m| path != "-" && m.is_file())?.len();
+    let mut file = File::open(path).ok()?;
+    let mut start = [0; merl::HEADER];
+    file.read_exact(&mut start).ok().filter(|()| merl::begins(&start, length))?;
+    file.rewind().ok()?;
+    let (sha256, read) = rayon::join(|| checksum(path), || merl::read(&mut file, length));
+    let table = |table| format::File { format: Format::Merl, table: Table::HalfAngle(table), printed_tis: Vec::new() };
+    Some(Loaded {
+        name: path.to_owned(),
+        input: Input { path: path.to_owned(), sha256: sha256.ok() },
+        subject: read.map_err(|e| e.in_file(path).to_string()).map(|read| measured(path, read.map(table))),
+    })
+}
+
+/// SHA-256 of a file, hexadecimal.
+fn checksum(path: &str) -> io::Result<String> {
+    let (mut file, mut hash, mut block) = (File::open(path)?, Sha256::new(), vec![0; BLOCK]);
+    loop {
+        match file.read(&mut block)? {
+            0 => return Ok(hash.finalize().iter().map(|b| format!("{b:02x}")).collect()),
+            n => hash.update(&block[..n]),
+        }
+    }
+}
+
+/// A table whose findings name its file.
+fn measured(path: &str, read: Checked<format::File>) -> Checked<Subject> {
+    let in_file = |mut f: Finding| {
+        f.location.path = Some(path.to_owned());
+        f
+    };
+    let findings = read.findings.into_iter().map(in_file).collect();
+    Checked { value: Subject::Measured(Box::new(read.value)), findings }
 }
 
 /// A table where the content is one, or the user says so; else a description.
@@ -194,12 +178,7 @@ fn of_bytes(
 ) -> Result<Checked<Subject>, String> {
     let table = || -> Result<Checked<Subject>, String> {
         let read = format::open(bytes, format).map_err(|e| e.in_file(argument).to_string())?;
-        let in_file = |mut f: Finding| {
-            f.location.path = Some(argument.to_owned());
-            f
-        };
-        let findings = read.findings.into_iter().map(in_file).collect();
-        Ok(Checked { value: Subject::Measured(Box::new(read.value)), findings })
+        Ok(measured(argument, read))
     };
     if format.is_some() || format::detect(bytes).is_some() {
         return table();

@@ -6,6 +6,7 @@ mod convert;
 mod eval;
 mod fit;
 mod load;
+mod numbers;
 mod plot;
 
 use clap::Subcommand;

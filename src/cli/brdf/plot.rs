@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::load::{BandArgs, MaterialArgs, Numbers, Ready, Subject, load, prepare};
+use super::load::{BandArgs, MaterialArgs, Ready, Subject, load, prepare};
+use super::numbers::{Numbers, check_lobes};
 use crate::brdf::Brdf;
 use crate::brdf::table::Channel;
 use crate::cli::notes::Notes;
@@ -15,8 +16,6 @@ use crate::plot::{Format, Panel, RasterPanel, draw};
 
 /// Wavelengths of the colours of spheres and slices, nm.
 const SPHERE_NM: (f64, f64, u32) = (400.0, 700.0, 31);
-/// Lobes in one drawing at most.
-const MOST_LOBES: usize = 6;
 
 /// What to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -44,7 +43,7 @@ Examples:
   photopic brdf plot 'ggx(alpha=0.1, medium=Au)' -o gold.svg
   photopic brdf plot paint.binary --kind slice -o paint.png
 
-A place that a table does not hold is drawn with the table's guess, but in a slice it has a colour of its own.")]
+What a table does not hold is marked: dashed lines are its guess, and in a sphere, a slice or a lobe such places are pale lilac.")]
 pub(in crate::cli) struct PlotArgs {
     #[command(flatten)]
     materials: MaterialArgs,
@@ -66,19 +65,23 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
         return Err(Failure::Message(format!("{count} materials; expected one per picture")));
     };
     let thetas = &arguments.theta_i.0;
-    if thetas.len() > MOST_LOBES || thetas.iter().any(|t| !(0.0..90.0).contains(t)) {
-        let message = format!("--theta-i: expected 1 to {MOST_LOBES} angles from 0 to below 90 degrees");
-        return Err(Failure::Message(message));
-    }
+    check_lobes(&arguments.theta_i)?;
     let wanted = &arguments.materials.bands;
-    let loaded = load(path, wanted.format.map(Into::into));
+    let loaded = load(path, wanted.format);
     let read = loaded.subject.map_err(Failure::Message)?;
     Notes::new(&arguments.materials.materials, talk).print(&read.findings);
     let Ready { bands, brdf } = prepare(path, &read.value, wanted, &[555.0]).map_err(Failure::Message)?;
     let names: Vec<String> = bands.iter().map(ToString::to_string).collect();
     // Lobes are of one band: the middle one.
     let band = brdf.bands() / 2;
-    let polar = || Panel::from(lobe_panel(brdf.as_ref(), &format!("{}, {}", loaded.name, names[band]), thetas, band));
+    let polar = || {
+        Panel::from(lobe_panel(
+            brdf.as_ref(),
+            &format!("{}, {}", file_name(path, &loaded.name), names[band]),
+            thetas,
+            band,
+        ))
+    };
     let log = || Panel::from(log_panel(brdf.as_ref(), thetas, band));
     let albedo = || Panel::from(albedo_panel(brdf.as_ref(), &names));
     let coloured = |panel: fn(&dyn Brdf, &Tint) -> RasterPanel| -> Result<Panel, Failure> {
@@ -111,6 +114,12 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
     };
     let bytes = draw(&panels, None, format).map_err(|e| Failure::Message(e.to_string()))?;
     write_file(&arguments.output, &bytes, std::slice::from_ref(path))
+}
+
+/// A material's name without the folders of its file.
+fn file_name<'a>(argument: &str, name: &'a str) -> &'a str {
+    let folders = Path::new(argument).file_name().and_then(|n| n.to_str()).map_or(0, |n| argument.len() - n.len());
+    if argument.contains('(') { name } else { name.get(folders..).unwrap_or(name) }
 }
 
 /// Colours of bands: by the observer where all are wavelengths, else as channels.

@@ -5,12 +5,13 @@ use std::io::Write;
 use clap::Args;
 use serde_json::json;
 
-use super::input::{bytes_of, hex, load};
+use super::input::load;
 use super::{Form, Reconstructed, open_basis, table_of};
 use crate::brdf::compress::Error;
 use crate::brdf::compress::file::{BasisFile, Checksum};
 use crate::brdf::table::{Channel, Known};
-use crate::cli::brdf::load::Numbers;
+use crate::cli::brdf::load::{bytes_of, hex};
+use crate::cli::brdf::numbers::Numbers;
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};

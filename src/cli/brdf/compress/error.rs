@@ -79,7 +79,8 @@ fn panel(scores: &[Score]) -> CurvesPanel {
         "measured directions, 90 % below",
     ];
     let points = |i: usize| order.iter().map(|s| (s.count as f64, report::figures(s)[i])).collect();
-    let curve = |(i, name): (usize, &&str)| NamedCurve { name: (*name).to_owned(), points: points(i) };
+    let curve =
+        |(i, name): (usize, &&str)| NamedCurve { name: (*name).to_owned(), points: points(i), ..NamedCurve::default() };
     CurvesPanel {
         title: "what comes back of materials held out".to_owned(),
         x_label: "number of components, or of measured directions".to_owned(),
@@ -88,5 +89,6 @@ fn panel(scores: &[Score]) -> CurvesPanel {
         curves: names.iter().enumerate().map(curve).collect(),
         logarithmic: true,
         level: None,
+        ..CurvesPanel::default()
     }
 }

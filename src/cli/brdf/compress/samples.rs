@@ -6,11 +6,10 @@ use clap::Args;
 use serde_json::json;
 
 use super::coefficients::Rebuilt;
-use super::input::{bytes_of, hex};
 use super::{Form, Reconstructed, open_basis, table_of};
 use crate::brdf::compress::Grid;
-use crate::brdf::format;
 use crate::brdf::table::{Known, Points, Table};
+use crate::cli::brdf::load::{Loaded, Subject, load};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
@@ -88,16 +87,11 @@ pub(in crate::cli) struct InferArgs {
 pub(super) fn infer(arguments: &InferArgs, talk: Talk) -> Result<(), Failure> {
     let path = &arguments.points;
     let (file, checksum) = open_basis(&arguments.basis)?;
-    let bytes = bytes_of(path)
-        .map_err(|e| Failure::Message(format!("{path}: cannot be read: {e}; expected measured points")))?;
-    let input = Input { path: path.clone(), sha256: Some(hex(&bytes)) };
-    let read = format::open(&bytes, None).map_err(|e| Failure::Message(e.in_file(path).to_string()))?;
-    let findings: Vec<Finding> = read.findings.into_iter().map(|f| f.at(Location::default().in_file(path))).collect();
-    Notes::counting(1, talk).print(&findings);
-    let Table::Points(points) = read.value.table else {
-        let found = read.value.format;
-        return Err(Failure::Message(format!("{path}: found a {found} table; expected a list of measured points")));
-    };
+    let Loaded { input, subject, .. } = load(path, None);
+    let read = subject.map_err(Failure::Message)?;
+    Notes::counting(1, talk).print(&read.findings);
+    let points = points(read.value)
+        .map_err(|found| Failure::Message(format!("{path}: found {found}; expected a list of measured points")))?;
     let bins = bins(&points, &file.grid).map_err(|message| Failure::Message(format!("{path}: {message}")))?;
     let mut encoded = Encoded { channels: points.channels().to_vec(), coefficients: Vec::new(), rms_ln: Vec::new() };
     let (mut columns, mut known) = (Vec::new(), vec![Known::Inferred; file.grid.bins().len()]);
@@ -110,6 +104,17 @@ pub(super) fn infer(arguments: &InferArgs, talk: Talk) -> Result<(), Failure> {
     }
     let rebuilt = Rebuilt { command: "brdf compress infer", file: &file, checksum: &checksum, encoded, columns, known };
     rebuilt.finish(&arguments.to, input, &[path.clone(), arguments.basis.clone()], talk)
+}
+
+/// The points of a list, or what there is instead.
+fn points(subject: Subject) -> Result<Points, String> {
+    match subject {
+        Subject::Measured(file) => match file.table {
+            Table::Points(points) => Ok(points),
+            _ => Err(format!("a {} table", file.format)),
+        },
+        Subject::Described(_) => Err("a model".to_owned()),
+    }
 }
 
 /// The bin of each point.

@@ -10,7 +10,7 @@ use super::input::{Loaded, load};
 use super::table_of;
 use crate::brdf::compress::Collection;
 use crate::brdf::compress::file::{BasisFile, Source};
-use crate::cli::brdf::load::{Bins, Numbers};
+use crate::cli::brdf::numbers::{Bins, Numbers};
 use crate::cli::notes::Notes;
 use crate::cli::output::{Sink, Whole, overwrites, same_file};
 use crate::cli::{Failure, Talk};
