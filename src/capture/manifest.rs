@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A set of photographs.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
     /// A name for reports.
@@ -66,6 +66,14 @@ pub struct Stack {
     pub light: Option<String>,
     /// The photographs.
     pub exposures: Vec<Exposure>,
+}
+
+impl Stack {
+    /// A stack of an object.
+    #[must_use]
+    pub fn new(name: impl Into<String>, exposures: Vec<Exposure>) -> Self {
+        Self { name: name.into(), shows: Shows::Object, light: None, exposures }
+    }
 }
 
 /// What a stack shows.

@@ -6,10 +6,11 @@
 //!
 //! σ_z is the error of a code, σ_g that of the response. The weight does not use the noisy x_j itself where a better one is there: it is
 //! the mean of the exposures so far, so that dark noise does not draw the result down. Exposures are added one after another: memory
-//! does not grow with their number, three numbers per sample.
+//! does not grow with their number: 16 bytes per sample.
 
 use super::response::Curve;
 use super::{Error, Photo};
+use crate::image::{self, Channel, Description, Meaning, Region, Source};
 
 /// Codes outside of these, of 0 to 255, are dark or saturated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +44,6 @@ pub enum State {
 #[derive(Debug, Clone)]
 pub struct Merge {
     width: usize,
-    height: usize,
     channels: usize,
     range: Range,
     noise: f64,
@@ -52,23 +52,27 @@ pub struct Merge {
     /// Bounds from codes out of range: the radiance is above the first and below the second.
     bounds: Vec<[f32; 2]>,
     size: String,
+    description: Description,
 }
 
-/// Radiances of a stack, each up to the factor of its channel.
+/// What is known of the radiance of one sample, up to the factor of its channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The radiance, or its bound.
+    pub radiance: f32,
+    /// Its standard error; infinite where only a bound is known.
+    pub standard_error: f32,
+    /// What became of it.
+    pub state: State,
+}
+
+/// How radiance follows from a code.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Merged {
-    /// Pixels in a row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// 1 or 3.
-    pub channels: usize,
-    /// Radiances, interleaved.
-    pub radiance: Vec<f32>,
-    /// Their standard errors; infinite where only a bound is known.
-    pub standard_error: Vec<f32>,
-    /// What became of each.
-    pub states: Vec<State>,
+pub enum Respond {
+    /// In proportion: code 255 is a radiance of 1 at 1 s.
+    Linear,
+    /// By a curve per channel.
+    Curves(Vec<Curve>),
 }
 
 impl Merge {
@@ -78,13 +82,13 @@ impl Merge {
         let samples = first.width * first.height * first.channels;
         Self {
             width: first.width,
-            height: first.height,
             channels: first.channels,
             range,
             noise,
             sums: vec![[0.0; 2]; samples],
             bounds: vec![[0.0, f32::INFINITY]; samples],
             size: first.size(),
+            description: describe(first.width, first.height, first.channels),
         }
     }
 
@@ -95,15 +99,18 @@ impl Merge {
     ///
     /// # Panics
     /// Without a curve per channel.
-    pub fn add(&mut self, name: &str, time_s: f64, photo: &Photo, curves: &[Curve]) -> Result<(), Error> {
-        assert_eq!(curves.len(), self.channels, "a curve per channel");
+    pub fn add(&mut self, name: &str, time_s: f64, photo: &Photo, respond: &Respond) -> Result<(), Error> {
         if photo.size() != self.size {
             return Err(Error::Size { name: name.to_owned(), found: photo.size(), expected: self.size.clone() });
         }
         if !(time_s > 0.0 && time_s.is_finite()) {
             return Err(Error::Time { name: name.to_owned(), time_s });
         }
-        let tables: Vec<Table> = curves.iter().map(|c| Table::new(c, time_s, self.noise)).collect();
+        let tables: Vec<Table> = match respond {
+            Respond::Linear => vec![Table::Linear { time_s, noise: self.noise }; self.channels],
+            Respond::Curves(curves) => curves.iter().map(|c| Table::new(c, time_s, self.noise)).collect(),
+        };
+        assert_eq!(tables.len(), self.channels, "a curve per channel");
         for (i, (sum, bound)) in self.sums.iter_mut().zip(&mut self.bounds).enumerate() {
             let (code, table) = (photo.code(i), &tables[i % self.channels]);
             let (x, relative) = table.at(code);
@@ -122,65 +129,105 @@ impl Merge {
         Ok(())
     }
 
-    /// The radiances.
+    /// Sample `i`, interleaved: (y·width + x)·channels + c.
     #[must_use]
-    pub fn finish(self) -> Merged {
-        let mut merged = Merged {
-            width: self.width,
-            height: self.height,
-            channels: self.channels,
-            radiance: Vec::with_capacity(self.sums.len()),
-            standard_error: Vec::with_capacity(self.sums.len()),
-            states: Vec::with_capacity(self.sums.len()),
+    pub fn sample(&self, i: usize) -> Sample {
+        let ([above, weight], [least, most]) = (self.sums[i], self.bounds[i]);
+        let (radiance, standard_error, state) = if weight > 0.0 {
+            (above / weight, weight.sqrt().recip(), State::Valid)
+        } else if least > 0.0 && most.is_finite() {
+            (0.5 * (least + most), 0.5 * (most - least).abs(), State::Gap)
+        } else if least > 0.0 {
+            (least, f32::INFINITY, State::Saturated)
+        } else {
+            (most, f32::INFINITY, State::Dark)
         };
-        for ([above, weight], [least, most]) in self.sums.into_iter().zip(self.bounds) {
-            let (x, error, state) = if weight > 0.0 {
-                (above / weight, weight.sqrt().recip(), State::Valid)
-            } else if least > 0.0 && most.is_finite() {
-                (0.5 * (least + most), 0.5 * (most - least).abs(), State::Gap)
-            } else if least > 0.0 {
-                (least, f32::INFINITY, State::Saturated)
-            } else {
-                (most, f32::INFINITY, State::Dark)
-            };
-            merged.radiance.push(x);
-            merged.standard_error.push(error);
-            merged.states.push(state);
-        }
-        merged
+        Sample { radiance, standard_error, state }
+    }
+
+    /// Samples in each state: valid, saturated, dark, gap.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 4] {
+        let mut counts = [0; 4];
+        (0..self.sums.len()).for_each(|i| counts[self.sample(i).state as usize] += 1);
+        counts
     }
 }
 
-/// Radiance and its relative standard error at 1/16 codes: a curve costs an exponential per entry, not per pixel.
-struct Table(Vec<(f64, f64)>);
+/// Names of the channels of a photograph.
+fn names(channels: usize) -> &'static [&'static str] {
+    if channels == 1 { &["Y"] } else { &["R", "G", "B"] }
+}
+
+/// Radiances as `R`, `G`, `B` (or `Y`), their standard errors as `standard_error.R` …, what became of each as `state.R` …: 0 valid,
+/// 1 saturated, 2 dark, 3 gap.
+fn describe(width: usize, height: usize, channels: usize) -> Description {
+    let prefixes = ["", "standard_error.", "state."];
+    let planes = prefixes
+        .iter()
+        .flat_map(|p| names(channels).iter().map(move |n| Channel::new(format!("{p}{n}"), "", Meaning::Other)));
+    Description::planes(width, height, planes.collect())
+}
+
+/// The result as an image, without a copy of it.
+impl Source for Merge {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), image::Error> {
+        let mut rows = out.chunks_exact_mut(region.width.max(1));
+        for y in region.y..region.y + region.height {
+            for channel in channels {
+                let Some(row) = rows.next() else { return Ok(()) };
+                let (kind, c) = (channel / self.channels, channel % self.channels);
+                for (x, value) in (region.x..).zip(row) {
+                    let sample = self.sample((y * self.width + x) * self.channels + c);
+                    *value = match kind {
+                        0 => sample.radiance,
+                        1 => sample.standard_error,
+                        _ => f32::from(sample.state as u8),
+                    };
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Radiance and its relative standard error by code. Of a curve they are tabulated at 1/16 codes: an exponential per entry, not per
+/// pixel.
+#[derive(Clone)]
+enum Table {
+    Linear { time_s: f64, noise: f64 },
+    Curve(Vec<(f64, f64)>),
+}
 
 /// Entries per code.
-const FINE: f64 = 16.0;
+const FINE: u32 = 16;
+/// The greatest code.
+const TOP: f64 = 255.0;
 
 impl Table {
     fn new(curve: &Curve, time_s: f64, noise: f64) -> Self {
         let entry = |k: u32| {
-            let code = f64::from(k) / FINE;
+            let code = f64::from(k) / f64::from(FINE);
             // Where the curve is flat a code tells nothing: the least slope is that of a code in a thousand.
             let slope = curve.slope(code).max(1e-3);
             let relative = (slope * noise).hypot(curve.standard_error(code));
             (curve.ln_exposure(code).exp() / time_s, relative)
         };
-        Self((0..=255 * 16).map(entry).collect())
+        Self::Curve((0..=255 * FINE).map(entry).collect())
     }
 
     fn at(&self, code: f64) -> (f64, f64) {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "codes are 0 to 255")]
-        let k = (code * FINE).round() as usize;
-        self.0[k.min(self.0.len() - 1)]
-    }
-}
-
-impl Merged {
-    /// Samples in each state: valid, saturated, dark, gap.
-    #[must_use]
-    pub fn counts(&self) -> [usize; 4] {
-        let count = |state: State| self.states.iter().filter(|s| **s == state).count();
-        [State::Valid, State::Saturated, State::Dark, State::Gap].map(count)
+        match self {
+            Self::Linear { time_s, noise } => (code / TOP / time_s, noise / code),
+            Self::Curve(entries) => {
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "codes are 0 to 255")]
+                let k = (code * f64::from(FINE)).round() as usize;
+                entries[k.min(entries.len() - 1)]
+            }
+        }
     }
 }

@@ -2,7 +2,11 @@
 
 use std::io::Cursor;
 
+use tiff::decoder::{Decoder, DecodingResult};
+
 use super::Error;
+use crate::image::format::exr;
+use crate::image::{Region, Source};
 
 /// The codes of a photograph.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,14 +28,21 @@ pub enum Codes {
     Eight(Vec<u8>),
     /// 16 bits.
     Sixteen(Vec<u16>),
+    /// Linear samples of a developed raw photograph; 1 is where it saturates.
+    Linear(Vec<f32>),
 }
 
 impl Photo {
-    /// Decodes a PNG or a JPEG without touching its codes.
+    /// Decodes a photograph without touching its codes: PNG, JPEG; TIFF of 16 bits or floats and EXR, which are taken as linear.
     ///
     /// # Errors
     /// [`Error::Undecodable`].
     pub fn decode(bytes: &[u8]) -> Result<Self, Error> {
+        match bytes {
+            [0x76, 0x2f, 0x31, 0x01, ..] => return linear_exr(bytes),
+            [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => return linear_tiff(bytes),
+            _ => {}
+        }
         let wrong = |e: image::ImageError| Error::Undecodable { reason: e.to_string() };
         let picture = image::load_from_memory(bytes).map_err(wrong)?;
         let (width, height) = (picture.width() as usize, picture.height() as usize);
@@ -52,7 +63,14 @@ impl Photo {
         match &self.codes {
             Codes::Eight(codes) => f64::from(codes[i]),
             Codes::Sixteen(codes) => f64::from(codes[i]) / 257.0,
+            Codes::Linear(values) => 255.0 * f64::from(values[i]),
         }
+    }
+
+    /// Whether its format says that the codes are proportional to exposure.
+    #[must_use]
+    pub fn is_linear(&self) -> bool {
+        matches!(self.codes, Codes::Linear(_))
     }
 
     /// Size and channels in words.
@@ -71,6 +89,50 @@ impl Photo {
         };
         (0..self.width * self.height).map(at).collect()
     }
+}
+
+fn undecodable(reason: impl ToString) -> Error {
+    Error::Undecodable { reason: reason.to_string() }
+}
+
+fn linear_tiff(bytes: &[u8]) -> Result<Photo, Error> {
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(undecodable)?;
+    let (width, height) = decoder.dimensions().map_err(undecodable)?;
+    let channels = match decoder.colortype().map_err(undecodable)? {
+        tiff::ColorType::Gray(_) => 1,
+        tiff::ColorType::RGB(_) => 3,
+        other => return Err(undecodable(format!("a TIFF of {other:?}; expected grey or RGB"))),
+    };
+    let values = match decoder.read_image().map_err(undecodable)? {
+        DecodingResult::U16(v) => v.into_iter().map(|v| f32::from(v) / 65535.0).collect(),
+        DecodingResult::F32(v) => v,
+        _ => return Err(undecodable("a TIFF of other than 16 bits or 32-bit floats")),
+    };
+    let (width, height) = (width as usize, height as usize);
+    if values.len() != width * height * channels {
+        return Err(undecodable("a TIFF of separate planes"));
+    }
+    Ok(Photo { width, height, channels, codes: Codes::Linear(values) })
+}
+
+fn linear_exr(bytes: &[u8]) -> Result<Photo, Error> {
+    let mut source = exr::open(Cursor::new(bytes)).map_err(undecodable)?.value;
+    let description = source.description().clone();
+    let number = |name: &str| description.channels.iter().position(|c| c.name == name);
+    let rgb: Vec<usize> = ["R", "G", "B"].into_iter().filter_map(number).collect();
+    let numbers = match (rgb.len(), number("Y")) {
+        (3, _) => rgb,
+        (_, Some(grey)) => vec![grey],
+        _ => return Err(undecodable("an EXR without channels R, G, B or Y")),
+    };
+    let (width, height, channels) = (description.width, description.height, numbers.len());
+    let mut rows = vec![0.0; width * channels];
+    let mut values = Vec::with_capacity(width * height * channels);
+    for y in 0..height {
+        source.read(Region::rows(&description, y, 1), &numbers, &mut rows).map_err(undecodable)?;
+        values.extend((0..width).flat_map(|x| (0..channels).map(move |c| c * width + x)).map(|i| rows[i]));
+    }
+    Ok(Photo { width, height, channels, codes: Codes::Linear(values) })
 }
 
 /// The exposure time that the EXIF data of a photograph state, s; `None` where there are none or no time in them.

@@ -5,6 +5,8 @@ use crate::capture::Error;
 
 /// Share of the pixels of a pair of exposures from which on an order is believed: more than noise moves.
 const MOST_OUT_OF_ORDER: f64 = 0.5;
+/// Codes by which two exposures differ at least where they count: more than noise, also in the dark.
+const TELLING: u8 = 8;
 /// Times closer than this factor are not ordered.
 const DISTINCT: f64 = 1.2;
 
@@ -93,9 +95,8 @@ pub fn check_order(stacks: &[Exposures]) -> Result<(), Error> {
         for (long, longer_s) in stack.times_s.iter().enumerate() {
             for (short, shorter_s) in stack.times_s.iter().enumerate().filter(|(_, s)| **s * DISTINCT < *longer_s) {
                 let pairs = stack.codes[long].iter().zip(&stack.codes[short]);
-                // Equal codes at the ends of the range say nothing; within it they are against a longer time.
-                let told = pairs.clone().filter(|(l, s)| l != s || weight(f64::from(**l)) > 0.25).count();
-                let darker = pairs.filter(|(l, s)| l < s).count();
+                let told = pairs.clone().filter(|(l, s)| l.abs_diff(**s) >= TELLING).count();
+                let darker = pairs.filter(|(l, s)| s.saturating_sub(**l) >= TELLING).count();
                 let share = darker as f64 / told.max(1) as f64;
                 let ratio = longer_s / shorter_s;
                 if share > MOST_OUT_OF_ORDER && worst.as_ref().is_none_or(|(r, _)| ratio > *r) {
