@@ -50,7 +50,7 @@ pub fn consistency(stacks: &[Exposures], curves: &[Curve]) -> Consistency {
                 let each: Vec<(usize, f64, f64)> = (0..count)
                     .map(|j| {
                         let z = stack.code(j, pixel, channel);
-                        (j, weight(z as f64), curve.ln_g[z] - stack.times_s[j].ln())
+                        (j, weight(z as f64) * certainty(curve, z), curve.ln_g[z] - stack.times_s[j].ln())
                     })
                     .filter(|(_, w, _)| *w > 0.0)
                     .collect();
@@ -83,6 +83,13 @@ pub fn consistency(stacks: &[Exposures], curves: &[Curve]) -> Consistency {
         }
     }
     Consistency { rms_ln: (square / f64::max(total, f64::MIN_POSITIVE)).sqrt(), exposures }
+}
+
+/// How much less a code says than that of a linear camera: where the curve is steep, as in the black of a scan, an error of a code is
+/// a large one of ln g.
+fn certainty(curve: &Curve, z: usize) -> f64 {
+    let steepness = (z as f64 + 1.0) * curve.slope(z as f64);
+    steepness.max(1.0).powi(-2)
 }
 
 /// Refuses stacks in which a longer exposure is darker than a shorter one, whatever the response: photographs or times swapped.
