@@ -1,5 +1,7 @@
 //! Whether exposures agree with one another.
 
+use std::ops::RangeInclusive;
+
 use super::{Curve, Exposures, weight};
 use crate::capture::Error;
 
@@ -7,6 +9,8 @@ use crate::capture::Error;
 const MOST_OUT_OF_ORDER: f64 = 0.5;
 /// Codes by which two exposures differ at least where they count: more than noise, also in the dark.
 const TELLING: u8 = 8;
+/// Codes that are compared: nearer to black, noise that cannot go below 0 draws the mean up; nearer to white, down.
+const COMPARED: RangeInclusive<usize> = 16..=240;
 /// Times closer than this factor are not ordered.
 const DISTINCT: f64 = 1.2;
 
@@ -50,7 +54,8 @@ pub fn consistency(stacks: &[Exposures], curves: &[Curve]) -> Consistency {
                 let each: Vec<(usize, f64, f64)> = (0..count)
                     .map(|j| {
                         let z = stack.code(j, pixel, channel);
-                        (j, weight(z as f64) * certainty(curve, z), curve.ln_g[z] - stack.times_s[j].ln())
+                        let w = if COMPARED.contains(&z) { weight(z as f64) * certainty(curve, z) } else { 0.0 };
+                        (j, w, curve.ln_g[z] - stack.times_s[j].ln())
                     })
                     .filter(|(_, w, _)| *w > 0.0)
                     .collect();
