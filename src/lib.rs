@@ -2,6 +2,7 @@
 #![warn(missing_docs)]
 
 pub mod brdf;
+pub mod capture;
 pub mod cli;
 pub mod colorimetry;
 pub mod constants;

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 mod brdf;
+mod capture;
 mod convert;
 mod image;
 mod lamp;
@@ -53,6 +54,9 @@ enum Command {
     /// Reflection of materials (BRDF models): facts, audits, values, pictures.
     #[command(subcommand)]
     Brdf(brdf::BrdfCommand),
+    /// Photographs of known geometry: the camera, its response, radiance.
+    #[command(subcommand)]
+    Capture(capture::CaptureCommand),
     /// A scene (TOML) into readings of virtual instruments with their standard errors, and spectral pictures.
     Render(Box<render::RenderArgs>),
     /// Parts of a render (`render --shard`) into its readings and pictures.
@@ -111,6 +115,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Image(command) => image::run(command, cli.talk),
         Command::Lamp(command) => lamp::run(command, cli.talk),
         Command::Brdf(command) => brdf::run(command, cli.talk),
+        Command::Capture(command) => capture::run(command, cli.talk),
         Command::Render(arguments) => render::run(&arguments, cli.talk),
         Command::Merge(arguments) => render::merge(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),

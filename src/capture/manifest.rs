@@ -1,0 +1,173 @@
+//! What was photographed, in words: TOML in, a typed and checked manifest out. No file is opened here.
+//!
+//! `docs/capture.md` explains the manifest with examples; [`schema`] prints it as a JSON schema. Paths are relative to the manifest.
+
+use std::ops::Range;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A set of photographs.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// A name for reports.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// The views of a chessboard that tell the camera.
+    #[serde(default)]
+    pub board: Option<Board>,
+    /// How the codes of the photographs follow from exposure.
+    #[serde(default)]
+    pub response: Response,
+    /// Photographs of one unchanged scene under one light, at one or several exposure times.
+    #[serde(default)]
+    pub stack: Vec<Stack>,
+}
+
+/// A chessboard and its views.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Board {
+    /// Inner corners along a row, and rows of them.
+    pub corners: [usize; 2],
+    /// Side of a square, m; without it lengths are in squares.
+    #[serde(default)]
+    pub square_m: Option<f64>,
+    /// Photographs of the board.
+    #[serde(default)]
+    pub views: Vec<String>,
+    /// A CSV of corners found already, columns view, idx, X, Y, u, v: used instead of `views`.
+    #[serde(default)]
+    pub corners_file: Option<String>,
+}
+
+/// Where the response comes from.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Response {
+    /// A table that `photopic capture response --csv` wrote; without it the response is found from the stacks.
+    pub file: Option<String>,
+    /// Codes are proportional to exposure.
+    pub linear: bool,
+}
+
+/// Photographs of one scene.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stack {
+    /// A name for reports and outputs.
+    pub name: String,
+    /// What it shows.
+    #[serde(default)]
+    pub shows: Shows,
+    /// The light that was on, by name.
+    #[serde(default)]
+    pub light: Option<String>,
+    /// The photographs.
+    pub exposures: Vec<Exposure>,
+}
+
+impl Stack {
+    /// A stack of an object.
+    #[must_use]
+    pub fn new(name: impl Into<String>, exposures: Vec<Exposure>) -> Self {
+        Self { name: name.into(), shows: Shows::Object, light: None, exposures }
+    }
+}
+
+/// What a stack shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shows {
+    /// The object to be measured.
+    #[default]
+    Object,
+    /// An evenly lit field: tells vignetting.
+    Flat,
+    /// A mirror ball: tells where the light is.
+    MirrorBall,
+}
+
+/// One photograph.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Exposure {
+    /// The file.
+    pub photo: String,
+    /// Exposure time, s; without it that of the EXIF data.
+    #[serde(default)]
+    pub time_s: Option<f64>,
+}
+
+/// What is wrong with a manifest, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{line}:{column}: {message}")]
+pub struct Error {
+    /// Line, from 1.
+    pub line: u64,
+    /// Column in characters, from 1.
+    pub column: u64,
+    /// What was found, and what was expected.
+    pub message: String,
+}
+
+impl Error {
+    fn at(text: &str, span: &Range<usize>, message: &str) -> Self {
+        let before = text.get(..span.start).unwrap_or(text);
+        let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
+        Self {
+            line: before.matches('\n').count() as u64 + 1,
+            column: line.chars().count() as u64 + 1,
+            message: message.to_owned(),
+        }
+    }
+}
+
+impl Manifest {
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// The first mistake in TOML, in keys and in types.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        toml::from_str(text).map_err(|e| Error::at(text, &e.span().unwrap_or_default(), e.message()))
+    }
+}
+
+/// The JSON schema of manifests (draft 2020-12).
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(Manifest).to_value()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = r#"
+title = "a ball"
+[board]
+corners = [9, 6]
+views = ["a.png"]
+[[stack]]
+name = "left"
+light = "L1"
+exposures = [{ photo = "l1.png", time_s = 0.5 }, { photo = "l2.png" }]
+"#;
+
+    #[test]
+    fn a_manifest_is_read() {
+        let m = Manifest::parse(TEXT).unwrap();
+        assert_eq!((m.stack[0].shows, m.stack[0].exposures[1].time_s), (Shows::Object, None));
+        assert_eq!(m.board.unwrap().corners, [9, 6]);
+        assert!(schema().to_string().contains("mirror-ball"));
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_place() {
+        let message = |from: &str, to: &str| Manifest::parse(&TEXT.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(message("light =", "lamp =").starts_with("8:1: unknown field `lamp`"));
+        assert!(message("0.5", "\"0.5\"").starts_with("9:42: "));
+        assert!(message("[9, 6]", "[9]").starts_with("4:"));
+    }
+}

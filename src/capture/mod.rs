@@ -1,0 +1,23 @@
+//! From photographs of known geometry to what they measure: the camera, its response, radiance.
+//!
+//! - [`manifest`]: what was photographed, in TOML; [`photo`]: the codes of a photograph and when it says it was exposed.
+//! - [`response`]: the curve from code to exposure, from stacks of photographs of one scene at several times.
+//! - [`merge`]: such a stack into linear radiance with its standard error and a mask.
+//! - [`camera`]: intrinsics and distortion from views of a chessboard.
+//!
+//! # Conventions
+//! - *Code*: what the file stores; here always scaled to 0–255, also between whole numbers for 16-bit files.
+//! - *Exposure* (of a pixel): radiance times time, up to one factor per channel; ln g(z) is its logarithm at code z.
+//! - Pixel (0, 0) has its centre at image coordinates (0, 0), as in OpenCV: x to the right, y downwards.
+//! - Photographs run in rows from the top, channels interleaved: sample (x, y, c) stands at `(y·width + x)·channels + c`.
+
+pub mod camera;
+pub mod error;
+pub mod manifest;
+pub mod merge;
+pub mod photo;
+pub mod response;
+
+pub use error::Error;
+pub use manifest::Manifest;
+pub use photo::Photo;
