@@ -404,3 +404,10 @@ fn skies_and_the_sun_are_read() {
         photopic().arg("render").arg(&path).assert().code(2).stderr(contains(message));
     }
 }
+
+#[test]
+fn a_missing_folder_is_told_before_anything_is_rendered() {
+    let mut command = photopic();
+    command.arg("render").arg(office()).args(["--samples", "1000000", "--folder", "no-such-folder"]);
+    command.assert().code(2).stderr(contains("no-such-folder: no such folder"));
+}

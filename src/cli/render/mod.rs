@@ -145,6 +145,17 @@ pub(super) struct MergeArgs {
     output: Option<PathBuf>,
 }
 
+/// Where pictures go: there must be such a folder, which is asked before anything is rendered.
+fn folder(given: Option<&Path>) -> Result<&Path, Failure> {
+    match given {
+        Some(folder) if !folder.is_dir() => {
+            Err(Failure::Message(format!("{}: no such folder; expected one that is there", folder.display())))
+        }
+        Some(folder) => Ok(folder),
+        None => Ok(Path::new("")),
+    }
+}
+
 pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
     let a = arguments;
     let Some(path) = a.scene.as_deref() else {
@@ -182,7 +193,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         None => None,
     };
     let targets = targets(a, &work.built)?;
-    let job = Job { share, folder: a.folder.as_deref().unwrap_or(Path::new("")), targets: &targets, talk };
+    let job = Job { share, folder: folder(a.folder.as_deref())?, targets: &targets, talk };
     match work.render(&job, state.as_mut())? {
         None => Ok(()),
         Some(done) => work.report("render", done, a.json, a.output.as_deref(), talk, a.packets),
@@ -220,7 +231,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         return Err(Failure::Message(message));
     }
     let targets = vec![None; work.built.instruments.len()];
-    let folder = a.folder.as_deref().unwrap_or(Path::new(""));
+    let folder = folder(a.folder.as_deref())?;
     let job = Job { share: Share::WHOLE, folder, targets: &targets, talk };
     match work.render(&job, Some(&mut state))? {
         None => Ok(()),
