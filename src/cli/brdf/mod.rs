@@ -10,6 +10,8 @@ mod plot;
 
 use clap::Subcommand;
 
+pub(super) use load::Bins;
+
 use super::{Failure, Talk};
 
 /// Verbs of `brdf`.
