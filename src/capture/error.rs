@@ -84,11 +84,8 @@ pub enum Error {
         expected: &'static str,
     },
     /// A photograph whose codes are not radiance.
-    #[error("found codes of unknown response in {name}; expected linear EXR or 16-bit TIFF: `photopic capture merge` makes them")]
-    NotLinear {
-        /// Which photograph.
-        name: String,
-    },
+    #[error("found codes of unknown response; expected linear EXR or 16-bit TIFF: `photopic capture merge` makes EXR")]
+    NotLinear,
     /// A part of the geometry that is not stated, or cannot be.
     #[error("found {found}; expected {expected}")]
     Setup {

@@ -32,10 +32,10 @@ impl Radiance {
     ///
     /// # Errors
     /// [`Error::Undecodable`], [`Error::NotLinear`] for codes of unknown response.
-    pub fn decode(name: &str, bytes: &[u8], time_s: f64) -> Result<Self, Error> {
+    pub fn decode(bytes: &[u8], time_s: f64) -> Result<Self, Error> {
         let photo = Photo::decode(bytes)?;
         let Codes::Linear(values) = photo.codes else {
-            return Err(Error::NotLinear { name: name.to_owned() });
+            return Err(Error::NotLinear);
         };
         let Photo { width, height, channels, .. } = photo;
         let exr = bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]);

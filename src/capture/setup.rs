@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
-use serde::de::{Deserializer, Error as _};
 use serde::Deserialize;
+use serde::de::{Deserializer, Error as _};
 
 use super::camera::{self, Intrinsics};
 use crate::geometry::lens::Distortion;
@@ -37,6 +37,9 @@ pub struct Camera {
     /// What was up in the picture.
     #[serde(default = "up", deserialize_with = "direction")]
     pub up: [f64; 3],
+    /// Samples are values at the centres of pixels, as some renderers give them, not averages over their areas, as sensors do.
+    #[serde(default)]
+    pub point_samples: bool,
 }
 
 fn forward() -> [f64; 3] {
@@ -66,7 +69,7 @@ impl Camera {
 }
 
 /// A sphere.
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
     /// Its centre, m.
@@ -74,6 +77,9 @@ pub struct Sphere {
     /// Its radius, m.
     #[serde(deserialize_with = "positive")]
     pub radius_m: f64,
+    /// A picture of the size of the photographs, brighter than half where its material is to be measured.
+    #[serde(default)]
+    pub mask: Option<String>,
 }
 
 /// A light: near with `position_m`, or distant with `direction`.
@@ -150,7 +156,10 @@ impl TryFrom<Stated> for Light {
         };
         let (Place::Near(v) | Place::Distant(v)) = place;
         if !v.iter().all(|v| v.is_finite()) || place == Place::Distant([0.0; 3]) {
-            return Err(format!("light `{}` at {v:?}; expected finite numbers, and a direction of some length", s.name));
+            return Err(format!(
+                "light `{}` at {v:?}; expected finite numbers, and a direction of some length",
+                s.name
+            ));
         }
         let strength = strength.map(Vec::from);
         if strength.as_ref().is_some_and(|s| s.is_empty() || s.iter().any(|v| !(*v > 0.0 && v.is_finite()))) {
@@ -239,7 +248,8 @@ mod tests {
     use super::super::Manifest;
     use super::*;
 
-    const TEXT: &str = "[camera]\nfx = 100\nfy = 100.0\ncx = 1.5\ncy = 2.5\nforward = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]\n
+    const TEXT: &str =
+        "[camera]\nfx = 100\nfy = 100.0\ncx = 1.5\ncy = 2.5\nforward = [0.0, 0.0, -1.0]\nup = [0.0, 1.0, 0.0]\n
 [sphere]\ncentre_m = [0.0, 0.0, 0.0]\nradius_m = 1.0\n
 [[light]]\nname = \"a\"\nposition_m = [1.0, 2.0, 3.0]\nintensity_w_per_sr = [3.0, 2.0, 1.0]\n
 [[light]]\nname = \"b\"\ndirection = [0.0, 0.0, 1.0]\nirradiance_w_per_m2 = 5.0\n";
@@ -262,6 +272,9 @@ mod tests {
         assert_eq!(message("radius_m = 1.0", "radius_m = 0.0"), "11:12: found 0; expected a number above 0");
         assert!(message("up = [0.0, 1.0", "up = [0.0, 0.0").starts_with("7:6: found [0.0, 0.0, 0.0]"));
         assert!(message("position_m = [1.0, 2.0, 3.0]\n", "").starts_with("13:1: light `a`; expected `position_m`"));
-        assert!(message("irradiance_w_per_m2 = 5.0", "irradiance_w_per_m2 = \"5\"").contains("expected a number, or a list"));
+        assert!(
+            message("irradiance_w_per_m2 = 5.0", "irradiance_w_per_m2 = \"5\"")
+                .contains("expected a number, or a list")
+        );
     }
 }

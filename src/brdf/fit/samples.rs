@@ -102,7 +102,10 @@ impl Samples {
         errors: Option<&[f64]>,
     ) -> Result<Self, Error> {
         let (places, bands) = (directions.len(), channels.len());
-        if places == 0 || bands == 0 || [Some(values.len()), errors.map(<[f64]>::len)].iter().flatten().any(|n| *n != places * bands) {
+        if places == 0
+            || bands == 0
+            || [Some(values.len()), errors.map(<[f64]>::len)].iter().flatten().any(|n| *n != places * bands)
+        {
             return Err(Error::NoPlaces { places, max_theta_deg: 90.0 });
         }
         let cosines: Vec<f64> = directions.iter().map(|(i, _)| i.z).collect();

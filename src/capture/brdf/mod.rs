@@ -8,6 +8,9 @@
 //! alone, divided by E: errors of camera, sphere and lights are not in it. A sphere lights no part of itself and casts no shadow on itself
 //! but the attached one, so nothing else has to be masked.
 //!
+//! A sensor averages over the area of a pixel: a lobe in its picture is wider than it is. L is therefore corrected to the pixel's centre by
+//! 1/24 of the Laplacian of the picture.
+//!
 //! - [`Scene::observe`]: the measurements of one picture, and how many pixels were masked for which reason.
 //! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere.
 //!

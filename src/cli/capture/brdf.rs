@@ -65,7 +65,7 @@ pub(in crate::cli) struct BrdfArgs {
     /// Use every N-th pixel of every N-th row.
     #[arg(long, value_name = "N", default_value_t = 1)]
     every: usize,
-    /// A picture of the size of the photographs, brighter than half where the object is.
+    /// A picture of the size of the photographs, brighter than half where the object is, instead of the manifest's.
     #[arg(long, value_name = "PICTURE")]
     mask: Option<PathBuf>,
     #[command(flatten)]
@@ -95,7 +95,10 @@ impl Target {
             Some("csv") => Ok(Self::Csv),
             Some("alta") => Ok(Self::Alta),
             Some("toml") => Ok(Self::Material),
-            _ => Err(Failure::Message(format!("{}: expected a name ending in .binary, .csv, .alta or .toml", path.display()))),
+            _ => Err(Failure::Message(format!(
+                "{}: expected a name ending in .binary, .csv, .alta or .toml",
+                path.display()
+            ))),
         }
     }
 }
@@ -121,7 +124,9 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let mut photos = Photos::open("capture brdf", &a.given, talk)?;
     let limits = Limits { max_theta_i_deg: a.max_theta_i, max_theta_o_deg: a.max_theta_o, every: a.every };
     let scene = Scene::new(&photos.manifest, limits).map_err(message)?;
-    let mask = a.mask.as_deref().map(|p| mask(&mut photos, p)).transpose()?;
+    let stated = photos.manifest.sphere.as_ref().and_then(|s| s.mask.clone());
+    let mask = a.mask.as_ref().map(|p| p.display().to_string()).or_else(|| stated.map(|m| photos.path(&m)));
+    let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
     let mut run = Run { scene, mask, seen: Vec::new(), all: None, strengths: Vec::new() };
     let scale = run.strengths(&mut photos)?;
     run.observe(&mut photos)?;
@@ -175,9 +180,8 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
 }
 
 /// Pixels of the object.
-fn mask(photos: &mut Photos, path: &Path) -> Result<Vec<bool>, Failure> {
-    let path = path.display().to_string();
-    let bytes = photos.bytes(&path)?;
+fn mask_of(photos: &mut Photos, path: &str) -> Result<Vec<bool>, Failure> {
+    let bytes = photos.bytes(path)?;
     let picture = Photo::decode(&bytes).map_err(|e| Failure::Message(format!("{path}: {e}")))?;
     Ok(picture.luma().iter().map(|v| *v > 127.5).collect())
 }
@@ -222,7 +226,8 @@ impl Run {
                     .observe(&picture, light.place, &ones, self.mask.as_deref(), &mut |s| seen.push(s))
                     .map_err(|e| Failure::Message(format!("{name}: {e}")))?;
                 let Some((strength, spread)) = strength_from(&seen, &reference.reflectance) else {
-                    let why = if seen.is_empty() { counts.why() } else { "its reflectances are not as many as its bands" };
+                    let why =
+                        if seen.is_empty() { counts.why() } else { "its reflectances are not as many as its bands" };
                     return Err(message(Error::Nothing { stack: stack.name, why: why.to_owned() }));
                 };
                 uneven = uneven.max(spread);
@@ -230,7 +235,9 @@ impl Run {
             }
             if uneven > UNEVEN {
                 let words = format!("the reference differs from a diffuse one by {:.1} % rms", 100.0 * uneven);
-                photos.findings.push(Finding::warning("K013", words).hint("the scale is off by as much, or the geometry is"));
+                photos
+                    .findings
+                    .push(Finding::warning("K013", words).hint("the scale is off by as much, or the geometry is"));
             }
             return Ok(Scale::Reference { reflectance: reference.reflectance, deviation_rms: uneven });
         }
@@ -241,7 +248,9 @@ impl Run {
         }
         if stated == 0 && lights.len() > 1 {
             let words = "no light has a stated strength: all are taken as equally strong";
-            photos.findings.push(Finding::warning("K012", words).hint("state intensity_w_per_sr, even in arbitrary units"));
+            photos
+                .findings
+                .push(Finding::warning("K012", words).hint("state intensity_w_per_sr, even in arbitrary units"));
         }
         let unit = photos.manifest.radiance.unit_w_per_m2_sr.filter(|_| stated > 0);
         let of = |l: &Light| {
@@ -263,7 +272,8 @@ impl Run {
             let lights = &photos.manifest.light;
             let wanted = stack.light.as_deref().unwrap_or(&stack.name);
             let Some(number) = lights.iter().position(|l| l.name == wanted) else {
-                let words = format!("stack {}: found no [[light]] called {wanted}; expected `light` to name one", stack.name);
+                let words =
+                    format!("stack {}: found no [[light]] called {wanted}; expected `light` to name one", stack.name);
                 return Err(Failure::Message(words));
             };
             let place = lights[number].place;
@@ -296,7 +306,8 @@ impl Run {
             [one] => vec![*one; picture.channels],
             each => each.to_vec(),
         };
-        let counts: Counts = self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut |s| all.push(s))?;
+        let counts: Counts =
+            self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut |s| all.push(s))?;
         if all.is_empty() {
             self.all = None;
         }
@@ -325,7 +336,7 @@ fn picture(photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Fai
     if !(time_s > 0.0 && time_s.is_finite()) {
         return Err(wrong(Error::Time { name: photo.clone(), time_s }));
     }
-    let picture = Radiance::decode(photo, &bytes, time_s).map_err(wrong)?;
+    let picture = Radiance::decode(&bytes, time_s).map_err(wrong)?;
     Ok((picture, path))
 }
 
@@ -339,7 +350,10 @@ fn warn(photos: &mut Photos, seen: &[StackSeen]) {
     }
     if places.len() == 1 {
         let words = "one light only: the measurements cover one surface in the space of directions, and the fits guess the rest";
-        photos.findings.push(Finding::warning("K010", words).hint("eight lights from near the camera to behind the object tell much more"));
+        photos.findings.push(
+            Finding::warning("K010", words)
+                .hint("eight lights from near the camera to behind the object tell much more"),
+        );
     }
 }
 
@@ -363,7 +377,10 @@ fn encode(target: Target, all: &Observations, binned: &Binned, path: &Path) -> R
     if target == Target::Merl {
         return merl::write(&table).ok_or_else(|| {
             let bands = all.channels.len();
-            Failure::Message(format!("{}: a MERL file has three channels; found {bands}; expected .csv or .alta", path.display()))
+            Failure::Message(format!(
+                "{}: a MERL file has three channels; found {bands}; expected .csv or .alta",
+                path.display()
+            ))
         });
     }
     let points = nodes(&Table::HalfAngle(table)).map_err(message)?.value;
