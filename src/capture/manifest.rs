@@ -186,7 +186,7 @@ exposures = [{ photo = "l1.png", time_s = 0.5 }, { photo = "l2.png" }]
     fn mistakes_are_told_with_their_place() {
         let message = |from: &str, to: &str| Manifest::parse(&TEXT.replacen(from, to, 1)).unwrap_err().to_string();
         assert!(message("light =", "lamp =").starts_with("8:1: unknown field `lamp`"));
-        assert!(message("0.5", "\"0.5\"").starts_with("9:42: "));
+        assert!(message("0.5", "\"0.5\"").starts_with("9:43: "));
         assert!(message("[9, 6]", "[9]").starts_with("4:"));
     }
 }

@@ -1,5 +1,7 @@
 //! Where camera, sphere and lights were: the part of a manifest that `capture brdf` reads. Lengths in metres, in any frame that all share.
 
+use std::num::NonZeroU32;
+
 use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -37,9 +39,10 @@ pub struct Camera {
     /// What was up in the picture.
     #[serde(default = "up", deserialize_with = "direction")]
     pub up: [f64; 3],
-    /// Samples are values at the centres of pixels, as some renderers give them, not averages over their areas, as sensors do.
+    /// Of a computed picture whose samples are means over N × N evenly spaced places of a pixel: N, 1 for values at the centres. Without it
+    /// samples are averages over the areas of pixels, as sensors make them.
     #[serde(default)]
-    pub point_samples: bool,
+    pub places_per_side: Option<NonZeroU32>,
 }
 
 fn forward() -> [f64; 3] {
@@ -57,6 +60,12 @@ impl Camera {
         let [k1, k2, p1, p2, k3] = self.distortion;
         let intrinsics = Intrinsics { fx: self.fx, fy: self.fy, cx: self.cx, cy: self.cy };
         camera::Camera { intrinsics, distortion: Distortion { k1, k2, p1, p2, k3 } }
+    }
+
+    /// Variance of the places that a sample is a mean over, along x or y, px²: 1/12 for the area of a pixel.
+    #[must_use]
+    pub fn pixel_variance(&self) -> f64 {
+        (1.0 - self.places_per_side.map_or(0.0, |n| f64::from(n.get()).powi(-2))) / 12.0
     }
 
     /// The axes of the camera (right, down, forward) as columns; `None` where `up` is along `forward`.

@@ -5,19 +5,18 @@ use std::fs;
 
 use glam::{DVec2, DVec3};
 use photopic::brdf::Brdf;
-use photopic::brdf::coordinates::Parameterisation;
 use photopic::brdf::description::{Bands, Material};
 use photopic::brdf::fit::{Fit, Options, Uncertainty, fit};
-use photopic::brdf::table::{Known, Points, Resolution, Table};
+use photopic::brdf::table::Resolution;
 use photopic::capture::Manifest;
 use photopic::capture::brdf::{Limits, Observations, Scene, Seen, bin, strength_from};
 use photopic::capture::camera::Camera;
 use photopic::capture::radiance::Radiance;
 use photopic::capture::setup::Place;
-use photopic::geometry::direction::{from_degrees, mirror};
+use photopic::geometry::direction::mirror;
 use photopic::math::random::Stream;
 
-use crate::common::{rows, shared};
+use crate::common::shared;
 
 const SIDE: usize = 96;
 
@@ -32,7 +31,7 @@ distortion = [-0.05, 0.09, -0.0003, 0.002, 0.0]
 position_m = [2.0, 0.1, 0.2]
 forward = [-1.0, 0.0, 0.0]
 up = [0.0, 0.0, 1.0]
-point_samples = true
+places_per_side = 1
 [sphere]
 centre_m = [0.0, 0.1, 0.2]
 radius_m = 0.2
@@ -169,8 +168,8 @@ fn what_a_pixel_averages_is_undone() {
         scene(manifest).observe(&picture, light, &STRENGTH, None, &mut compare).expect("measured");
         median(all)
     };
-    let (as_points, as_averages) = (error(MANIFEST), error(&MANIFEST.replace("point_samples = true", "")));
-    // Averages over 8 × 8 places have 1 − 1/64 of the variance of the area: 1/64 of the error is left, and fourth derivatives.
+    let (as_points, as_averages) = (error(MANIFEST), error(&MANIFEST.replace("side = 1", "side = 8")));
+    // What is left are fourth derivatives.
     assert!(as_averages < 0.1 * as_points && as_points > 1e-4, "{as_points} {as_averages}");
 }
 
@@ -257,9 +256,10 @@ fn synthetic(material: &str) -> Option<Observations> {
     let json: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.join("scene.json")).expect("read")).expect("JSON");
     let k = &json["K"];
-    // The file has pixel centres at integer + 0.5, we at integers.
+    // The file has pixel centres at integer + 0.5, we at integers. It does not say over how many places a pixel is a mean: with the area of
+    // pixels n comes out 7 ± 1 % of the whole correction too high, which is what 4 × 4 places lack of the area's variance (1/16).
     let manifest = format!(
-        "[camera]\nfx = {}\nfy = {}\ncx = {}\ncy = {}\nposition_m = [0, 0, 8]\nforward = [0, 0, -1]\nup = [0, 1, 0]\n
+        "[camera]\nfx = {}\nfy = {}\ncx = {}\ncy = {}\nposition_m = [0, 0, 8]\nforward = [0, 0, -1]\nup = [0, 1, 0]\nplaces_per_side = 4\n
          [sphere]\ncentre_m = [0, 0, 0]\nradius_m = 1.0\n[radiance]\nunit_w_per_m2_sr = 1.0\nrelative_error = 2e-4\n",
         k[0][0],
         k[1][1],
@@ -321,34 +321,4 @@ fn the_phong_sphere_is_that_of_its_truth() {
         eprintln!("{value} ± {error}, truth {truth}");
         assert!((value - truth).abs() <= 3.0 * error, "{value} ± {error}, expected {truth}");
     }
-    tabulated("phong_n40", all);
-}
-
-#[test]
-fn the_rough_plastic_sphere_is_that_of_its_truth() {
-    let Some(all) = synthetic("roughplastic_a0.15") else { return };
-    tabulated("roughplastic_a0.15", all);
-}
-
-/// Measurements against the table of truth, at its places next to which something was measured.
-fn tabulated(name: &str, all: Observations) {
-    let Some(path) = shared(&format!("capture/synthetic_sphere/truth_{name}.csv")) else { return };
-    let points =
-        Points::new(Parameterisation::ViewLightAzimuth, all.channels, all.directions, all.values).expect("points");
-    let table = Table::Points(points);
-    let mut errors = Vec::new();
-    for row in rows(&path) {
-        let number = |start: &str| -> f64 {
-            row.iter().find(|(key, _)| key.starts_with(start)).expect("a column").1.parse().expect("a number")
-        };
-        let (i, o) = (from_degrees(number("theta_i"), 0.0), from_degrees(number("theta_o"), number("dphi")));
-        let mut values = [0.0; 3];
-        if table.value(i, o, &mut values) == Known::Measured {
-            errors.extend(values.iter().zip(["f_R", "f_G", "f_B"]).map(|(v, key)| (v / number(key) - 1.0).abs()));
-        }
-    }
-    let count = errors.len();
-    let error = median(errors);
-    eprintln!("{name}: median error {error:.2e} over {count} values of the table of truth");
-    assert!(error <= MEDIAN, "{error}");
 }

@@ -35,8 +35,8 @@ pub struct Scene {
     centre: DVec3,
     radius: f64,
     radiance: setup::Radiance,
-    /// Samples are averages over the areas of pixels, not values at their centres.
-    averaged: bool,
+    /// Of the places that a sample is a mean over, px².
+    pixel_variance: f64,
     /// Which measurements are used.
     pub limits: Limits,
 }
@@ -130,8 +130,8 @@ impl Scene {
             });
         }
         let (radius, radiance) = (sphere.radius_m, manifest.radiance);
-        let averaged = !camera.point_samples;
-        Ok(Self { camera: camera.lens(), position, axes, centre, radius, radiance, averaged, limits })
+        let pixel_variance = camera.pixel_variance();
+        Ok(Self { camera: camera.lens(), position, axes, centre, radius, radiance, pixel_variance, limits })
     }
 
     /// The point of the sphere that a pixel's centre sees, in units of the radius from its centre: the normal there.
@@ -252,7 +252,7 @@ impl Scene {
 
     /// The four pixels beside one, where averages are corrected and all four are of use: lit, on the sphere, within the range.
     fn neighbours(&self, picture: &Radiance, place: Place, (x, y): (usize, usize)) -> Option<[usize; 4]> {
-        if !self.averaged || x == 0 || y == 0 || x + 1 >= picture.width || y + 1 >= picture.height {
+        if self.pixel_variance <= 0.0 || x == 0 || y == 0 || x + 1 >= picture.width || y + 1 >= picture.height {
             return None;
         }
         let bands = picture.channels;
@@ -267,15 +267,16 @@ impl Scene {
 
     /// Sample `i` at the centre of its pixel and its standard error, given the same band of its neighbours.
     ///
-    /// The average of a smooth function over a unit square is its value in the middle plus 1/24 of its Laplacian, up to fourth derivatives;
-    /// the Laplacian is taken from the neighbours. That brings σ up by a sixth.
+    /// The mean of a smooth function over places of variance v along x and along y is its value in the middle plus v/2 of its Laplacian, up to
+    /// fourth derivatives; the Laplacian is taken from the neighbours. For the area of a pixel, v = 1/12, that brings σ up by a sixth.
     fn at_centre(&self, picture: &Radiance, i: usize, neighbours: Option<[usize; 4]>) -> (f64, f64) {
         let (value, error) = (f64::from(picture.values[i]), self.error(picture, i));
         let Some(neighbours) = neighbours else { return (value, error) };
-        let (mut corrected, mut variance) = (value * (1.0 + 4.0 / 24.0), (error * (1.0 + 4.0 / 24.0)).powi(2));
+        let part = 0.5 * self.pixel_variance;
+        let (mut corrected, mut variance) = (value * (1.0 + 4.0 * part), (error * (1.0 + 4.0 * part)).powi(2));
         for n in neighbours {
-            corrected -= f64::from(picture.values[n]) / 24.0;
-            variance += (self.error(picture, n) / 24.0).powi(2);
+            corrected -= part * f64::from(picture.values[n]);
+            variance += (part * self.error(picture, n)).powi(2);
         }
         (corrected, variance.sqrt())
     }
