@@ -19,7 +19,7 @@ pub struct StackSeen {
     /// The stack.
     pub name: String,
     /// Its light by name.
-    pub light: Option<String>,
+    pub light: String,
     /// Where that is.
     pub place: Place,
     /// What became of the pixels.
@@ -82,7 +82,7 @@ fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
 pub fn object(a: &Answer<'_>) -> Value {
     let stack = |s: &StackSeen| json!({"stack": s.name, "pixels": counts(&s.counts)});
     let light = |s: &StackSeen| {
-        let mut out = json!({"name": s.light.as_deref().unwrap_or(&s.name), "strength": s.strength});
+        let mut out = json!({"name": s.light, "strength": s.strength});
         match s.place {
             Place::Near(p) => out["position_m"] = json!(p),
             Place::Distant(d) => out["direction"] = json!(d),

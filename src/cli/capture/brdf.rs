@@ -201,13 +201,13 @@ impl Run {
     fn strengths(&mut self, photos: &mut Photos) -> Result<Scale, Failure> {
         let lights = photos.manifest.light.clone();
         let used = |light: &Light, photos: &Photos| {
-            let of = |s: &Stack| s.shows == Shows::Object && s.light.as_deref() == Some(light.name.as_str());
+            let of = |s: &Stack| s.shows == Shows::Object && light_of(s) == light.name;
             photos.manifest.stack.iter().any(of)
         };
         if let Some(reference) = photos.manifest.reference.clone() {
             let mut uneven: f64 = 0.0;
             for light in &lights {
-                let of = |s: &&Stack| s.shows == Shows::Reference && s.light.as_deref() == Some(light.name.as_str());
+                let of = |s: &&Stack| s.shows == Shows::Reference && light_of(s) == light.name;
                 let Some(stack) = photos.manifest.stack.iter().find(of).cloned() else {
                     if used(light, photos) {
                         return Err(Failure::Message(format!(
@@ -270,7 +270,7 @@ impl Run {
         }
         for stack in &stacks {
             let lights = &photos.manifest.light;
-            let wanted = stack.light.as_deref().unwrap_or(&stack.name);
+            let wanted = light_of(stack);
             let Some(number) = lights.iter().position(|l| l.name == wanted) else {
                 let words =
                     format!("stack {}: found no [[light]] called {wanted}; expected `light` to name one", stack.name);
@@ -311,12 +311,23 @@ impl Run {
         if all.is_empty() {
             self.all = None;
         }
-        self.seen.push(StackSeen { name: stack.name.clone(), light: stack.light.clone(), place, counts, strength });
+        self.seen.push(StackSeen {
+            name: stack.name.clone(),
+            light: light_of(stack).to_owned(),
+            place,
+            counts,
+            strength,
+        });
         if counts.valid == 0 {
             return Err(Error::Nothing { stack: stack.name.clone(), why: counts.why().to_owned() });
         }
         Ok(())
     }
+}
+
+/// Name of the light of a stack: its own where it names none.
+fn light_of(stack: &Stack) -> &str {
+    stack.light.as_deref().unwrap_or(&stack.name)
 }
 
 /// The picture of a stack, and its path.
