@@ -4,9 +4,7 @@ use std::fs;
 
 use photopic::capture::merge::{Merge, Range, Respond, State};
 use photopic::capture::photo::Codes;
-use photopic::capture::response::{
-    Curve, Exposures, GAUGE, LEVELS, Sampling, check_order, debevec, monotone, robertson,
-};
+use photopic::capture::response::{Curve, Exposures, LEVELS, Sampling, check_order, debevec, monotone, robertson};
 use photopic::capture::{Error, Photo};
 
 use crate::common::shared;
@@ -28,24 +26,6 @@ fn stack(times_s: &[f64], gamma: f64) -> Exposures {
         stack.add(&format!("{t}"), *t, &photograph(*t, gamma), Sampling { pixels: 4096 }).expect("alike");
     }
     stack
-}
-
-#[test]
-fn a_power_law_comes_back() {
-    for gamma in [1.0, 2.2] {
-        let stack = stack(&[0.25, 0.5, 1.0, 2.0, 4.0, 8.0], gamma);
-        let curve = &monotone(std::slice::from_ref(&stack)).expect("a response")[0];
-        assert_eq!(curve.decreasing_steps(), 0);
-        for z in 16..240 {
-            let expected = gamma * (z as f64 / GAUGE as f64).ln();
-            // Half a code, which rounding may take from each.
-            let bound = gamma * (0.5 / z as f64 + 0.5 / GAUGE as f64);
-            assert!((curve.ln_g[z] - expected).abs() < bound, "{gamma} {z}: {} {expected}", curve.ln_g[z]);
-        }
-        let covariance = curve.covariance.as_ref().expect("with covariance");
-        assert!(covariance.diagonal().iter().all(|v| v.is_finite() && *v >= 0.0));
-        assert!(covariance[(GAUGE, GAUGE)].abs() < 1e-12);
-    }
 }
 
 #[test]
