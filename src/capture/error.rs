@@ -83,4 +83,23 @@ pub enum Error {
         /// What it takes.
         expected: &'static str,
     },
+    /// A photograph whose codes are not radiance.
+    #[error("found codes of unknown response; expected linear EXR or 16-bit TIFF: `photopic capture merge` makes EXR")]
+    NotLinear,
+    /// A part of the geometry that is not stated, or cannot be.
+    #[error("found {found}; expected {expected}")]
+    Setup {
+        /// What is wrong.
+        found: String,
+        /// What it takes.
+        expected: &'static str,
+    },
+    /// A stack without a sample to use.
+    #[error("found no usable pixel in {stack}: {why}")]
+    Nothing {
+        /// Which stack.
+        stack: String,
+        /// What became of its pixels.
+        why: String,
+    },
 }

@@ -7,6 +7,8 @@ use std::ops::Range;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::setup::{Camera, Light, Radiance, Reference, Sphere};
+
 /// A set of photographs.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -23,6 +25,21 @@ pub struct Manifest {
     /// Photographs of one unchanged scene under one light, at one or several exposure times.
     #[serde(default)]
     pub stack: Vec<Stack>,
+    /// The camera that photographed the stacks, and where it stood.
+    #[serde(default)]
+    pub camera: Option<Camera>,
+    /// The sphere in front of it.
+    #[serde(default)]
+    pub sphere: Option<Sphere>,
+    /// The lights that stacks name.
+    #[serde(default)]
+    pub light: Vec<Light>,
+    /// What the samples of linear photographs mean.
+    #[serde(default)]
+    pub radiance: Radiance,
+    /// A diffuse sphere of known reflectance, photographed in the place of the object.
+    #[serde(default)]
+    pub reference: Option<Reference>,
 }
 
 /// A chessboard and its views.
@@ -87,6 +104,8 @@ pub enum Shows {
     Flat,
     /// A mirror ball: tells where the light is.
     MirrorBall,
+    /// The diffuse sphere of `[reference]`: tells how strong the light is.
+    Reference,
 }
 
 /// One photograph.

@@ -4,6 +4,7 @@
 //! - [`response`]: the curve from code to exposure, from stacks of photographs of one scene at several times.
 //! - [`merge`]: such a stack into linear radiance with its standard error and a mask.
 //! - [`camera`]: intrinsics and distortion from views of a chessboard.
+//! - [`setup`]: camera, sphere and lights of a manifest; [`radiance`]: photographs in linear radiance; [`brdf`]: what a sphere reflects.
 //!
 //! # Conventions
 //! - *Code*: what the file stores; here always scaled to 0–255, also between whole numbers for 16-bit files.
@@ -11,12 +12,15 @@
 //! - Pixel (0, 0) has its centre at image coordinates (0, 0), as in OpenCV: x to the right, y downwards.
 //! - Photographs run in rows from the top, channels interleaved: sample (x, y, c) stands at `(y·width + x)·channels + c`.
 
+pub mod brdf;
 pub mod camera;
 pub mod error;
 pub mod manifest;
 pub mod merge;
 pub mod photo;
+pub mod radiance;
 pub mod response;
+pub mod setup;
 
 pub use error::Error;
 pub use manifest::Manifest;

@@ -7,6 +7,7 @@ pub mod brdf;
 pub mod brdf_compress;
 pub mod brdf_fit;
 pub mod capture;
+pub mod capture_brdf;
 pub mod conversion;
 pub mod csv;
 pub mod envelope;

@@ -1,7 +1,8 @@
-//! `capture`: the camera, its response and merging, against OpenCV's figures and closed forms.
+//! `capture`: the camera, its response and merging, against OpenCV's figures, closed forms and synthetic pictures.
 
 #[path = "../common/mod.rs"]
 mod common;
 
+mod brdf;
 mod camera;
 mod response;

@@ -88,6 +88,41 @@ impl Samples {
         Ok(out)
     }
 
+    /// Scattered measurements: pairs of directions above the horizon, ω_i first, and the values of each in 1/sr, the bands side by side.
+    ///
+    /// With standard errors of the values the weight of a place is the mean over its bands of 1/(c σ)², c = cosθ_i: the cosine-weighted
+    /// measure is then a sum of squares in units of σ. Without, all count alike.
+    ///
+    /// # Errors
+    /// [`Error::NoPlaces`] for none, or where there are not as many values and errors as places times bands.
+    pub fn scattered(
+        channels: Vec<Channel>,
+        directions: Vec<(DVec3, DVec3)>,
+        values: Vec<f64>,
+        errors: Option<&[f64]>,
+    ) -> Result<Self, Error> {
+        let (places, bands) = (directions.len(), channels.len());
+        if places == 0
+            || bands == 0
+            || [Some(values.len()), errors.map(<[f64]>::len)].iter().flatten().any(|n| *n != places * bands)
+        {
+            return Err(Error::NoPlaces { places, max_theta_deg: 90.0 });
+        }
+        let cosines: Vec<f64> = directions.iter().map(|(i, _)| i.z).collect();
+        let weights = match errors {
+            None => vec![1.0; places],
+            Some(errors) => {
+                let of = |(errors, cos): (&[f64], &f64)| {
+                    errors.iter().map(|e| (cos * e).powi(-2)).sum::<f64>() / bands as f64
+                };
+                errors.chunks_exact(bands).zip(&cosines).map(of).collect()
+            }
+        };
+        let mut out = Self { channels, directions, cosines, weights, values, places };
+        out.normalise();
+        Ok(out)
+    }
+
     fn normalise(&mut self) {
         let mean = self.weights.iter().sum::<f64>() / self.weights.len() as f64;
         self.weights.iter_mut().for_each(|w| *w /= mean);

@@ -11,6 +11,8 @@ mod plot;
 
 use clap::Subcommand;
 
+pub(super) use numbers::Bins;
+
 use super::{Failure, Talk};
 
 /// Verbs of `brdf`.

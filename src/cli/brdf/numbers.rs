@@ -76,7 +76,7 @@ impl FromStr for Numbers {
 
 /// Numbers of bins as a user writes them: `90x90x180`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bins(pub Resolution);
+pub(in crate::cli) struct Bins(pub Resolution);
 
 impl FromStr for Bins {
     type Err = String;

@@ -1,5 +1,6 @@
 //! `capture`: photographs of known geometry; one file per verb.
 
+mod brdf;
 mod calibrate;
 mod merge;
 mod photos;
@@ -18,6 +19,8 @@ pub(super) enum CaptureCommand {
     Merge(merge::MergeArgs),
     /// Focal lengths, principal point and distortion from photographs of a chessboard.
     Calibrate(calibrate::CalibrateArgs),
+    /// The BRDF of a photographed sphere, with its uncertainty: measured bins and fitted models.
+    Brdf(brdf::BrdfArgs),
     /// Print the JSON schema of the manifest.
     Schema,
 }
@@ -27,6 +30,7 @@ pub(super) fn run(command: CaptureCommand, talk: Talk) -> Result<(), Failure> {
         CaptureCommand::Response(a) => response::response(&a, talk),
         CaptureCommand::Merge(a) => merge::merge(&a, talk),
         CaptureCommand::Calibrate(a) => calibrate::calibrate(&a, talk),
+        CaptureCommand::Brdf(a) => brdf::brdf(&a, talk),
         CaptureCommand::Schema => {
             use std::io::Write;
             Ok(writeln!(std::io::stdout().lock(), "{:#}", crate::capture::manifest::schema())?)

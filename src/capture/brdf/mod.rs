@@ -1,0 +1,91 @@
+//! From pictures of a sphere to its BRDF: every valid pixel is one measurement.
+//!
+//! ```text
+//! f_r = L / E      E = I cosθ_i / d²  (near light)      E = E_n cosθ_i  (distant light)
+//! ```
+//!
+//! The pixel's ray is that of its centre through the lens; where it meets the sphere gives point and normal. σ is that of the radiance
+//! alone, divided by E: errors of camera, sphere and lights are not in it. A sphere lights no part of itself and casts no shadow on itself
+//! but the attached one, so nothing else has to be masked.
+//!
+//! A sensor averages over the area of a pixel: a lobe in its picture is wider than it is. L is therefore corrected to the pixel's centre by
+//! 1/24 of the Laplacian of the picture.
+//!
+//! - [`Scene::observe`]: the measurements of one picture, and how many pixels were masked for which reason.
+//! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere.
+//!
+//! Reference: W. Matusik et al., *A Data-Driven Reflectance Model*, ACM Trans. Graph. 22 (2003), for the principle.
+
+mod bins;
+mod observe;
+mod scale;
+
+pub use bins::{Bin, Binned, bin};
+pub use observe::{Counts, Limits, Scene, Seen};
+pub use scale::strength_from;
+
+use glam::DVec3;
+
+use crate::brdf::fit::{self, Samples};
+use crate::brdf::table::Channel;
+
+/// Measurements in no order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observations {
+    /// The bands.
+    pub channels: Vec<Channel>,
+    /// ω_i and ω_o in the frame of the surface, +z its normal, turned about it at will.
+    pub directions: Vec<(DVec3, DVec3)>,
+    /// f_r in 1/sr, the bands of a measurement side by side.
+    pub values: Vec<f64>,
+    /// Standard errors in the same order; 0 where nobody stated one.
+    pub errors: Vec<f64>,
+}
+
+impl Observations {
+    /// None yet, of `bands` bands: one is called `Y`, three `R`, `G`, `B`.
+    #[must_use]
+    pub fn new(bands: usize) -> Self {
+        let channels = if bands == 3 { Channel::rgb() } else { vec![Channel::Named("Y".to_owned()); bands] };
+        Self { channels, directions: Vec::new(), values: Vec::new(), errors: Vec::new() }
+    }
+
+    /// Adds one.
+    pub fn push(&mut self, seen: &Seen<'_>) {
+        self.directions.push((seen.incident, seen.outgoing));
+        self.values.extend_from_slice(seen.values);
+        self.errors.extend_from_slice(seen.errors);
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.directions.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.directions.is_empty()
+    }
+
+    /// Whether all standard errors are known.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.errors.iter().all(|e| *e > 0.0)
+    }
+
+    /// Multiplies all values and errors.
+    pub fn scale(&mut self, factor: f64) {
+        self.values.iter_mut().chain(&mut self.errors).for_each(|v| *v *= factor);
+    }
+
+    /// For a fit: weighted by 1/σ² where all σ are known, else alike.
+    ///
+    /// # Errors
+    /// [`fit::Error::NoPlaces`] for none.
+    pub fn samples(&self) -> Result<Samples, fit::Error> {
+        let errors = self.has_errors().then_some(self.errors.as_slice());
+        Samples::scattered(self.channels.clone(), self.directions.clone(), self.values.clone(), errors)
+    }
+}

@@ -1,0 +1,81 @@
+//! A picture in linear radiance: what `capture merge` writes, any EXR, or a 16-bit linear TIFF with its exposure time.
+
+use std::io::Cursor;
+
+use super::merge::State;
+use super::photo::Codes;
+use super::{Error, Photo};
+use crate::image::format::exr;
+use crate::image::{Region, Source};
+
+/// Samples in rows from the top, channels interleaved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Radiance {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// 1 or 3.
+    pub channels: usize,
+    /// Exposure time, s: radiance is a sample over it.
+    pub time_s: f64,
+    /// The samples, as the picture has them.
+    pub values: Vec<f32>,
+    /// Their standard errors, where the picture has them.
+    pub errors: Option<Vec<f32>>,
+    /// What became of each when exposures were merged, where the picture says it.
+    pub states: Option<Vec<State>>,
+}
+
+impl Radiance {
+    /// Decodes a picture.
+    ///
+    /// # Errors
+    /// [`Error::Undecodable`], [`Error::NotLinear`] for codes of unknown response.
+    pub fn decode(bytes: &[u8], time_s: f64) -> Result<Self, Error> {
+        let photo = Photo::decode(bytes)?;
+        let Codes::Linear(values) = photo.codes else {
+            return Err(Error::NotLinear);
+        };
+        let Photo { width, height, channels, .. } = photo;
+        let exr = bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]);
+        let planes = |prefix| if exr { planes(bytes, prefix, channels) } else { Ok(None) };
+        let errors = planes("standard_error.")?;
+        let states = planes("state.")?.map(|all| all.into_iter().map(state).collect());
+        Ok(Self { width, height, channels, time_s, values, errors, states })
+    }
+
+    /// Size and channels in words.
+    #[must_use]
+    pub fn size(&self) -> String {
+        format!("{} × {} pixels in {} channel(s)", self.width, self.height, self.channels)
+    }
+}
+
+/// The number that a merged picture has for a state.
+fn state(number: f32) -> State {
+    match number {
+        0.0 => State::Valid,
+        1.0 => State::Saturated,
+        2.0 => State::Dark,
+        _ => State::Gap,
+    }
+}
+
+/// The planes whose names begin with `prefix`, interleaved; `None` unless there is one for each channel.
+fn planes(bytes: &[u8], prefix: &str, channels: usize) -> Result<Option<Vec<f32>>, Error> {
+    let wrong = |e: &dyn std::fmt::Display| Error::Undecodable { reason: e.to_string() };
+    let mut source = exr::open(Cursor::new(bytes)).map_err(|e| wrong(&e))?.value;
+    let description = source.description().clone();
+    let names: &[&str] = if channels == 1 { &["Y"] } else { &["R", "G", "B"] };
+    let number = |name: &&str| description.channels.iter().position(|c| c.name == format!("{prefix}{name}"));
+    let Some(numbers) = names.iter().map(number).collect::<Option<Vec<usize>>>() else { return Ok(None) };
+    let width = description.width;
+    let mut rows = vec![0.0; width * channels];
+    let mut values = Vec::with_capacity(width * description.height * channels);
+    for y in 0..description.height {
+        source.read(Region::rows(&description, y, 1), &numbers, &mut rows).map_err(|e| wrong(&e))?;
+        values.extend((0..width * channels).map(|i| rows[i % channels * width + i / channels]));
+    }
+    Ok(Some(values))
+}

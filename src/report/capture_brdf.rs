@@ -1,0 +1,194 @@
+//! A BRDF from photographs as JSON, table and text.
+
+use std::f64::consts::FRAC_1_PI;
+use std::fmt::Write;
+
+use serde_json::{Map, Value, json};
+
+use super::brdf_fit;
+use crate::brdf::table::Channel;
+use crate::capture::brdf::{Binned, Counts, Observations};
+use crate::capture::setup::Place;
+
+/// Median of f_r that a relative result is brought to, 1/sr.
+pub const RELATIVE_MEDIAN: f64 = 0.3 * FRAC_1_PI;
+
+/// What a picture gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StackSeen {
+    /// The stack.
+    pub name: String,
+    /// Its light by name.
+    pub light: String,
+    /// Where that is.
+    pub place: Place,
+    /// What became of the pixels.
+    pub counts: Counts,
+    /// Strength of the light per band, over the radiance of a sample of 1 at 1 s.
+    pub strength: Vec<f64>,
+}
+
+/// What the absolute values rest on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Scale {
+    /// A diffuse sphere of known reflectance.
+    Reference {
+        /// Its reflectance.
+        reflectance: Vec<f64>,
+        /// How far it was from diffuse, relative.
+        deviation_rms: f64,
+    },
+    /// Stated strengths of the lights.
+    Strengths {
+        /// Radiance of a sample of 1 at 1 s.
+        unit_w_per_m2_sr: f64,
+    },
+    /// Nothing: multiplied by a factor that makes the median [`RELATIVE_MEDIAN`].
+    Relative {
+        /// The factor.
+        factor: f64,
+    },
+}
+
+/// Everything there is to tell.
+#[derive(Debug, Clone, Copy)]
+pub struct Answer<'a> {
+    /// The pictures.
+    pub seen: &'a [StackSeen],
+    /// What absolute values rest on.
+    pub scale: &'a Scale,
+    /// The measurements.
+    pub all: &'a Observations,
+    /// The same in bins.
+    pub binned: &'a Binned,
+    /// Fits, where one succeeded.
+    pub fits: Option<&'a brdf_fit::Answer<'a>>,
+}
+
+fn counts(counts: &Counts) -> Value {
+    counts.named().into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect::<Map<String, Value>>().into()
+}
+
+fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
+    let mut all: Vec<(&'static str, usize)> = Counts::default().named().to_vec();
+    for s in seen {
+        all.iter_mut().zip(s.counts.named()).for_each(|(a, (_, n))| a.1 += n);
+    }
+    all
+}
+
+/// The result as JSON.
+#[must_use]
+pub fn object(a: &Answer<'_>) -> Value {
+    let stack = |s: &StackSeen| json!({"stack": s.name, "pixels": counts(&s.counts)});
+    let light = |s: &StackSeen| {
+        let mut out = json!({"name": s.light, "strength": s.strength});
+        match s.place {
+            Place::Near(p) => out["position_m"] = json!(p),
+            Place::Distant(d) => out["direction"] = json!(d),
+        }
+        out
+    };
+    let scale = match a.scale {
+        Scale::Reference { reflectance, deviation_rms } => {
+            json!({"kind": "reference", "absolute": true, "reflectance": reflectance, "deviation_rms": deviation_rms})
+        }
+        Scale::Strengths { unit_w_per_m2_sr } => {
+            json!({"kind": "strengths", "absolute": true, "unit_w_per_m2_sr": unit_w_per_m2_sr})
+        }
+        Scale::Relative { factor } => json!({"kind": "relative", "absolute": false, "factor": factor}),
+    };
+    let sum: Map<String, Value> = total(a.seen).into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect();
+    let channels: Vec<String> = a.all.channels.iter().map(Channel::to_string).collect();
+    let mut out = json!({
+        "bands": channels,
+        "scale": scale,
+        "lights": a.seen.iter().map(light).collect::<Vec<_>>(),
+        "stacks": a.seen.iter().map(stack).collect::<Vec<_>>(),
+        "pixels": sum,
+        "measurements": a.all.len(),
+        "standard_errors_stated": a.all.has_errors(),
+        "bins": {
+            "above_horizon": a.binned.above_horizon, "covered": a.binned.covered,
+            "rejected_measurements": a.binned.bins.iter().map(|b| b.rejected).sum::<usize>(),
+        },
+        "coverage_fraction": a.binned.coverage_fraction(),
+        "fits": [],
+    });
+    if let (Some(fits), Value::Object(out)) = (a.fits, &mut out) {
+        let mut of = brdf_fit::object(fits);
+        for key in ["fits", "best", "comparison"] {
+            if let Some(value) = of.remove(key) {
+                out.insert(key.to_owned(), value);
+            }
+        }
+    }
+    out
+}
+
+/// The bins with measurements, a row each.
+#[must_use]
+pub fn csv(a: &Answer<'_>) -> String {
+    let mut out = String::from("theta_h_deg,theta_d_deg,phi_d_deg,measurements,rejected");
+    // Writing to a string cannot fail.
+    for channel in &a.all.channels {
+        let _ = write!(out, ",f_{channel}_per_sr,standard_error_{channel}_per_sr");
+    }
+    out.push('\n');
+    for bin in &a.binned.bins {
+        let at = a.binned.resolution.centre(bin.bin);
+        let [h, d, p] = [at.theta_h, at.theta_d, at.phi_d].map(f64::to_degrees);
+        let _ = write!(out, "{h},{d},{p},{},{}", bin.count, bin.rejected);
+        for (value, error) in bin.values.iter().zip(&bin.errors) {
+            let error = if error.is_nan() { String::new() } else { error.to_string() };
+            let _ = write!(out, ",{value},{error}");
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// The result for people.
+#[must_use]
+pub fn text(a: &Answer<'_>) -> String {
+    let mut out = String::new();
+    let width = a.seen.iter().map(|s| s.name.chars().count()).max().unwrap_or(0).max(5);
+    let _ = write!(out, "{:width$}", "stack");
+    for (name, _) in total(&[]) {
+        let _ = write!(out, "{:>16}", name.replace('_', " "));
+    }
+    out.push('\n');
+    let row = |out: &mut String, name: &str, counts: &[(&str, usize)]| {
+        let _ = write!(out, "{name:width$}");
+        for (_, n) in counts {
+            let _ = write!(out, "{n:>16}");
+        }
+        out.push('\n');
+    };
+    for s in a.seen {
+        row(&mut out, &s.name, &s.counts.named());
+    }
+    if a.seen.len() > 1 {
+        row(&mut out, "all", &total(a.seen));
+    }
+    let scale = match a.scale {
+        Scale::Reference { .. } => "absolute, from the reference".to_owned(),
+        Scale::Strengths { .. } => "absolute, from the stated strengths of the lights".to_owned(),
+        Scale::Relative { .. } => "relative: median f_r set to 0.3/π; reflectances are ratios, not values".to_owned(),
+    };
+    let r = a.binned.resolution;
+    let _ = writeln!(
+        out,
+        "\nscale     {scale}\nbins      {} of {} above the horizon measured ({:.3} %), of {} × {} × {} in θh, θd, φd\n",
+        a.binned.covered,
+        a.binned.above_horizon,
+        100.0 * a.binned.coverage_fraction(),
+        r.theta_h,
+        r.theta_d,
+        r.phi_d
+    );
+    if let Some(fits) = a.fits {
+        out.push_str(&brdf_fit::text(fits));
+    }
+    out
+}
