@@ -24,10 +24,9 @@ use super::measure::Settings;
 use super::ray::Ray;
 use super::sampler::Sampler;
 use super::scene::Scene;
+use super::steps::{StepError, angles};
 use crate::luminaire::{self, Distribution, Kind, LampSet, Luminaire, Symmetry, System};
 
-/// The finest and the widest step of a grid, degrees.
-const STEPS_DEG: (f64, f64) = (0.1, 90.0);
 /// Most directions of a grid.
 const MOST_DIRECTIONS: usize = 100_000;
 /// Draws of an emitting surface's points per direction and replicate, at least.
@@ -46,16 +45,9 @@ pub struct Goniophotometer {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A step that does not divide the circle.
-    #[error("a {which} of {found} deg; expected one from 0.1 to 90 deg that divides {whole} deg")]
-    Step {
-        /// `c_step` or `gamma_step`.
-        which: &'static str,
-        /// The step, degrees.
-        found: f64,
-        /// What it divides, degrees.
-        whole: f64,
-    },
+    /// A step that does not divide its range.
+    #[error(transparent)]
+    Step(#[from] StepError),
     /// More directions than a grid may have.
     #[error("a grid of {found} directions; expected at most {MOST_DIRECTIONS}, by wider steps")]
     Directions {
@@ -349,18 +341,6 @@ fn intensity(scene: &Scene, index: usize, direction: DVec3, u: [f64; 3], out: &m
     }
     out.iter_mut().for_each(|e| *e *= seen.distance * seen.distance);
     true
-}
-
-/// The angles from 0 to `whole` in equal steps.
-fn angles(which: &'static str, step_deg: f64, whole: f64) -> Result<Vec<f64>, Error> {
-    let count = (whole / step_deg).round();
-    let divides = (count * step_deg - whole).abs() < 1e-6;
-    if !((STEPS_DEG.0..=STEPS_DEG.1).contains(&step_deg) && divides) {
-        return Err(Error::Step { which, found: step_deg, whole });
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "2 to 3600")]
-    let count = count as u32;
-    Ok((0..=count).map(|i| whole * f64::from(i) / f64::from(count)).collect())
 }
 
 impl Measured {

@@ -21,6 +21,7 @@ use super::measure::Settings;
 use super::ray::Ray;
 use super::sampler::Sampler;
 use super::scene::Scene;
+use super::steps::{StepError, angles};
 use crate::geometry::direction::from_degrees;
 use crate::math::sampling;
 
@@ -46,15 +47,8 @@ pub struct Gonioreflectometer {
 #[non_exhaustive]
 pub enum Error {
     /// A step that does not divide its range.
-    #[error("a {which} of {found} deg; expected one from 0.1 to 90 deg that divides {whole} deg")]
-    Step {
-        /// `theta_step` or `phi_step`.
-        which: &'static str,
-        /// The step, degrees.
-        found: f64,
-        /// What it divides, degrees.
-        whole: f64,
-    },
+    #[error(transparent)]
+    Step(#[from] StepError),
     /// Too many directions.
     #[error(
         "{cells} cells for each of {incident} directions of incidence; expected at most {MOST_CELLS} and {MOST_INCIDENT}, and at least one direction"
@@ -271,15 +265,4 @@ impl Visitor for Leaving {
     }
 
     fn met(&mut self, _surface: usize, _before: &[f64], _after: &[f64]) {}
-}
-
-/// The angles from 0 to `whole` in equal steps.
-fn angles(which: &'static str, step_deg: f64, whole: f64) -> Result<Vec<f64>, Error> {
-    let count = (whole / step_deg).round();
-    if !((0.1..=90.0).contains(&step_deg) && (count * step_deg - whole).abs() < 1e-6) {
-        return Err(Error::Step { which, found: step_deg, whole });
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 3600")]
-    let count = count as u32;
-    Ok((0..=count).map(|i| whole * f64::from(i) / f64::from(count)).collect())
 }

@@ -59,4 +59,5 @@ pub mod scene;
 pub mod sensor;
 pub mod shape;
 pub mod spool;
+pub mod steps;
 pub mod tree;
