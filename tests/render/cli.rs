@@ -411,3 +411,24 @@ fn a_missing_folder_is_told_before_anything_is_rendered() {
     command.arg("render").arg(office()).args(["--samples", "1000000", "--folder", "no-such-folder"]);
     command.assert().code(2).stderr(contains("no-such-folder: no such folder"));
 }
+
+/// Where the samples go changes what a picture is sure of, not what is expected of it.
+#[test]
+fn an_adaptive_picture_has_the_mean_of_an_even_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = std::fs::read_to_string(office().with_file_name("cornell.toml")).expect("the scene");
+    let small = scene.replace("[256, 256]", "[40, 40]");
+    let run = |adaptive: bool| {
+        let path = folder.path().join(format!("{adaptive}.toml"));
+        std::fs::write(&path, small.replace("[render]", &format!("[render]\nadaptive = {adaptive}"))).expect("a file");
+        let mut command = photopic();
+        command.arg("render").arg(&path).args(["--json", "--samples", "64", "--meter-samples", "64", "--packets", "0"]);
+        let out = json(command.arg("--folder").arg(folder.path()));
+        let sensors = out["results"][0]["sensors"].as_array().expect("sensors").clone();
+        let picture = sensors.iter().find(|s| s["name"] == "view").expect("a picture");
+        ["value", "standard_error"].map(|key| picture[key].as_f64().expect("a number"))
+    };
+    let ([even, a], [adaptive, b]) = (run(false), run(true));
+    assert!(even != adaptive);
+    assert!((even - adaptive).abs() < 4.5 * a.hypot(b), "{even} ± {a}, {adaptive} ± {b}");
+}
