@@ -13,6 +13,7 @@ pub mod illuminant;
 pub mod image;
 pub mod luminaire;
 pub mod math;
+pub mod mistake;
 pub mod photometry;
 pub mod plot;
 pub mod render;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// The modules from the ground up. Those on one line do not import one another.
 const ORDER: [&[&str]; 16] = [
-    &["finding"],
+    &["finding", "mistake"],
     &["units", "constants"],
     &["math"],
     &["geometry"],

@@ -2,12 +2,12 @@
 //!
 //! `docs/capture.md` explains the manifest with examples; [`schema`] prints it as a JSON schema. Paths are relative to the manifest.
 
-use std::ops::Range;
-
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::setup::{Camera, Light, Radiance, Reference, Sphere};
+use crate::mistake;
+pub use crate::mistake::Mistake as Error;
 
 /// A set of photographs.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
@@ -119,37 +119,13 @@ pub struct Exposure {
     pub time_s: Option<f64>,
 }
 
-/// What is wrong with a manifest, and where.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{line}:{column}: {message}")]
-pub struct Error {
-    /// Line, from 1.
-    pub line: u64,
-    /// Column in characters, from 1.
-    pub column: u64,
-    /// What was found, and what was expected.
-    pub message: String,
-}
-
-impl Error {
-    fn at(text: &str, span: &Range<usize>, message: &str) -> Self {
-        let before = text.get(..span.start).unwrap_or(text);
-        let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
-        Self {
-            line: before.matches('\n').count() as u64 + 1,
-            column: line.chars().count() as u64 + 1,
-            message: message.to_owned(),
-        }
-    }
-}
-
 impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
     /// The first mistake in TOML, in keys and in types.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        toml::from_str(text).map_err(|e| Error::at(text, &e.span().unwrap_or_default(), e.message()))
+        mistake::parse(text)
     }
 }
 
@@ -187,6 +163,7 @@ exposures = [{ photo = "l1.png", time_s = 0.5 }, { photo = "l2.png" }]
         let message = |from: &str, to: &str| Manifest::parse(&TEXT.replacen(from, to, 1)).unwrap_err().to_string();
         assert!(message("light =", "lamp =").starts_with("8:1: unknown field `lamp`"));
         assert!(message("0.5", "\"0.5\"").starts_with("9:43: "));
+        assert!(message("0.5", "inf").starts_with("9:43: found `inf`; expected a finite number"));
         assert!(message("[9, 6]", "[9]").starts_with("4:"));
     }
 }

@@ -15,18 +15,18 @@ pub mod spectrum;
 pub mod surface;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
 
 use light::Light;
 use material::Material;
 use sensor::Sensor;
 use spectrum::SpectrumSource;
 use surface::Shape;
+
+use crate::mistake;
+pub use crate::mistake::Mistake as Error;
 
 /// A point or a vector, m.
 type Vector = [f64; 3];
@@ -126,59 +126,13 @@ pub enum Model {
     Full,
 }
 
-/// What is wrong with a scene, and where.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{line}:{column}: {message}")]
-pub struct Error {
-    /// Line, from 1.
-    pub line: u64,
-    /// Column in characters, from 1.
-    pub column: u64,
-    /// What was found, and what was expected.
-    pub message: String,
-}
-
-impl Error {
-    /// At a range of bytes of the text.
-    #[must_use]
-    pub fn at(text: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
-        let before = text.get(..span.start).unwrap_or(text);
-        let line = before.rsplit_once('\n').map_or(before, |(_, line)| line);
-        Self {
-            line: before.matches('\n').count() as u64 + 1,
-            column: line.chars().count() as u64 + 1,
-            message: message.into(),
-        }
-    }
-}
-
 impl Description {
     /// Reads a scene.
     ///
     /// # Errors
     /// The first mistake in TOML, in keys, in types and in units.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        if let Ok(table) = DeTable::parse(text) {
-            let found = table.get_ref().iter().find_map(|(_, value)| not_finite(value));
-            if let Some(span) = found {
-                let found = text.get(span.clone()).unwrap_or_default();
-                return Err(Error::at(text, &span, format!("found `{found}`; expected a finite number")));
-            }
-        }
-        toml::from_str(text).map_err(|e| Error::at(text, &e.span().unwrap_or_default(), e.message()))
-    }
-}
-
-/// The place of the first number that is none or infinite, which TOML allows and no quantity of a scene is.
-fn not_finite(value: &Spanned<DeValue<'_>>) -> Option<Range<usize>> {
-    match value.get_ref() {
-        DeValue::Float(number) => {
-            let parsed = number.as_str().replace('_', "").parse::<f64>();
-            parsed.is_ok_and(|n| !n.is_finite()).then(|| value.span())
-        }
-        DeValue::Array(items) => items.iter().find_map(not_finite),
-        DeValue::Table(table) => table.iter().find_map(|(_, value)| not_finite(value)),
-        _ => None,
+        mistake::parse(text)
     }
 }
 
