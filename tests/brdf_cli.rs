@@ -444,6 +444,73 @@ fn what_a_file_cannot_carry_is_said() {
     }
 }
 
+#[test]
+fn many_materials_are_converted_into_a_folder_and_a_bad_one_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inside = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    let data = points(folder.path(), "lambert(reflectance=0.5)");
+    let (broken, out) = (inside("broken.bsdf"), format!("{}/", inside("tables")));
+    fs::write(&broken, "no table").expect("written");
+    let materials = [data.as_str(), &broken, "ggx(alpha=0.1, eta=1.5)"];
+    let arguments = [&["convert"], &materials[..], &["--to", "alta", "--json", "-o", &out]].concat();
+    let (code, document, stderr) = run(&arguments, "");
+    assert!(code == 2 && stderr.contains(&broken), "{code} {stderr}");
+    let document = json(&document);
+    let results = document["results"].as_array().expect("results");
+    let outputs: Vec<&str> = results.iter().filter_map(|r| r["output"].as_str()).collect();
+    assert_eq!(outputs, [inside("tables/points.alta"), inside("tables/ggx_alpha_0.1_eta_1.5.alta")]);
+    for output in outputs {
+        open(&fs::read(output).expect("written"), None).expect("an ALTA file");
+    }
+    assert_eq!(
+        (results[0]["path"].as_str(), document["inputs"].as_array().map(Vec::len)),
+        (Some(data.as_str()), Some(3))
+    );
+    assert!(document["findings"].as_array().expect("findings").iter().any(|f| f["code"] == "B000"), "{document}");
+    // One name for two, two of one name, and a document where the table would go.
+    let alta = inside("one.alta");
+    for (arguments, expected) in [
+        (vec!["convert", &data, "mirror()", "-o", &alta], "one output for 2 inputs; expected a folder"),
+        (vec!["convert", &data, &data, "--to", "csv", "-o", &out], "would be written to the same file as"),
+        (vec!["convert", &data, "--to", "csv", "--json", "-o", "-"], "standard output holds the JSON document"),
+    ] {
+        let (code, _, stderr) = run(&arguments, "");
+        assert!(code == 2 && stderr.contains(expected), "{arguments:?}: {code} {stderr}");
+    }
+}
+
+#[test]
+fn spectra_of_descriptions_come_from_files_beside_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inside = |name: &str| folder.path().join(name).to_str().expect("a plain path").to_owned();
+    fs::write(inside("wood.csv"), "wavelength_nm,reflectance\n400,0.1\n700,0.7\n").expect("written");
+    fs::write(inside("two.csv"), "wavelength_nm,a,b\n400,0.1,0.2\n700,0.7,0.2\n").expect("written");
+    fs::write(inside("wood.toml"), "model = \"lambert\"\nreflectance = \"wood.csv\"\n").expect("written");
+    // f = ρ/π on the line between the two points, and as at its end beyond them.
+    let expected = [0.1, 0.3, 0.7].map(|rho| rho / std::f64::consts::PI);
+    for material in [inside("wood.toml"), format!("lambert(reflectance=\"{}\")", inside("wood.csv"))] {
+        let (code, document, stderr) = run(&["eval", &material, "-w", "380,500,720", "--json"], "");
+        assert_eq!(code, 0, "{stderr}");
+        let document = json(&document);
+        let values = document["results"][0]["rows"][0]["brdf_per_sr"].as_array().expect("values");
+        for (value, expected) in values.iter().zip(expected) {
+            assert!((value.as_f64().expect("a number") - expected).abs() < 1e-15, "{material}: {value}");
+        }
+        let inputs = document["inputs"].as_array().expect("inputs");
+        assert!(inputs.len() == 2 && inputs[1]["path"] == inside("wood.csv") && inputs[1]["sha256"].is_string());
+    }
+    for (reflectance, expected) in [
+        ("nowhere.csv", "nowhere.csv: there is no such file; expected a spectrum"),
+        ("two.csv", "2 spectra; expected the name of one"),
+        ("red", "3:15: found `red` for `reflectance`; expected a number or spectrum from 0 to 1"),
+    ] {
+        let text = format!("name = \"x\"\nmodel = \"lambert\"\nreflectance = \"{reflectance}\"\n");
+        fs::write(inside("bad.toml"), text).expect("written");
+        let (code, _, stderr) = run(&["eval", &inside("bad.toml")], "");
+        assert!(code == 2 && stderr.contains(expected) && stderr.contains("bad.toml:3:15"), "{reflectance}: {stderr}");
+    }
+}
+
 /// A table of points of a material, as CSV.
 fn points(folder: &Path, material: &str) -> String {
     let angles = ["--theta-i", "5:75:14", "--theta-o", "2:80:6", "--phi", "0,60,120,180", "-w", "450,550,650", "--csv"];

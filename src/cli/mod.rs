@@ -13,6 +13,7 @@ mod image;
 mod lamp;
 mod notes;
 mod output;
+mod places;
 mod render;
 mod tables;
 mod writer;

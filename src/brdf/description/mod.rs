@@ -7,8 +7,9 @@
 //! ```
 //!
 //! A material is a sum of models, each with an optional weight. A parameter is a number; a word; a list `[a, b, c]` of one value
-//! per channel (R, G, B); or a spectrum `[[nm, value], …]`, linear in between and constant beyond its ends. Where a parameter
-//! of the material has channels, the whole material has them, and no wavelengths. A file says the same in TOML ([`toml`]):
+//! per channel (R, G, B); a spectrum `[[nm, value], …]`, linear in between and constant beyond its ends; or the name of a file with
+//! one spectrum, `paint.csv`, which has a dot in it ([`Material::with_spectra`]). Where a parameter of the material has channels, the
+//! whole material has them, and no wavelengths. A file says the same in TOML ([`toml`]):
 //!
 //! ```toml
 //! model = "ggx"
@@ -29,6 +30,7 @@ use super::medium;
 use super::parameter::{self, Arguments, Kind, Model, Parameter, Value};
 use super::sum::Sum;
 use super::{Brdf, abc, ashikhmin_shirley, microfacet, oren_nayar, phong, sgd, specular, ward};
+use crate::spectrum::{Sampling, Spectrum};
 
 /// All models by name.
 pub const MODELS: [Model; 14] = [
@@ -107,6 +109,12 @@ pub enum ErrorKind {
     /// A substance that is not known, or not there.
     #[error("{0}")]
     Medium(#[from] medium::Error),
+    /// A file of a spectrum that gave none.
+    #[error("{message}")]
+    File {
+        /// Why.
+        message: String,
+    },
     /// Channels where there are wavelengths, or the other way round.
     #[error("{found}; expected {expected}")]
     Bands {
@@ -191,6 +199,31 @@ impl Material {
     /// The models of the sum, in order.
     pub fn models(&self) -> impl Iterator<Item = &'static Model> {
         self.parts.iter().map(|p| p.model)
+    }
+
+    /// The material with the spectra of the files that it names, which `read` gives, or says in words why there is none.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] where the name stands.
+    pub fn with_spectra(mut self, mut read: impl FnMut(&str) -> Result<Spectrum, String>) -> Result<Self, Error> {
+        for part in &mut self.parts {
+            let spectral = part.arguments.iter_mut().filter(|a| a.parameter.kind == Kind::Spectral);
+            let weight = (&mut part.weight, part.place);
+            for (value, place) in std::iter::once(weight).chain(spectral.map(|a| (&mut a.value, a.place))) {
+                if let Raw::Word(name) = &value
+                    && name.contains('.')
+                {
+                    let wrong = |message| Error { place, kind: ErrorKind::File { message } };
+                    let spectrum = read(name).map_err(wrong)?;
+                    if spectrum.sampling() == Sampling::Lines {
+                        return Err(wrong(format!("{name}: spectral lines; expected a continuous spectrum")));
+                    }
+                    let pairs = spectrum.wavelengths_nm().iter().zip(spectrum.values());
+                    *value = Raw::Spectrum(pairs.map(|(nm, v)| [*nm, *v]).collect());
+                }
+            }
+        }
+        Ok(self)
     }
 
     /// The BRDF on the bands.
@@ -294,7 +327,8 @@ impl fmt::Display for Raw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Number(v) => write!(f, "{v}"),
-            Self::Word(w) => f.write_str(w),
+            Self::Word(w) if !w.is_empty() && w.chars().all(is_of_a_word) => f.write_str(w),
+            Self::Word(w) => write!(f, "\"{w}\""),
             Self::Channels(v) => write!(f, "{v:?}"),
             Self::Spectrum(v) => write!(f, "{v:?}"),
             Self::Open(None) => f.write_str("?"),
@@ -317,6 +351,11 @@ impl fmt::Display for Material {
         }
         Ok(())
     }
+}
+
+/// Whether a character stands in names without quotes.
+fn is_of_a_word(c: char) -> bool {
+    c.is_alphanumeric() || "_-./".contains(c)
 }
 
 /// The model of a name.

@@ -1,6 +1,6 @@
 //! The text form: `weight*model(name=value, …) + …`.
 
-use super::{Error, ErrorKind, Material, Part, Place, Raw, add, list, model, template};
+use super::{Error, ErrorKind, Material, Part, Place, Raw, add, is_of_a_word, list, model, template};
 
 /// Lists inside lists: a spectrum has two levels, more are nonsense.
 const DEEPEST: usize = 2;
@@ -74,8 +74,7 @@ impl<'a> Reader<'a> {
     /// A run of the characters of names and numbers.
     fn word(&mut self) -> &'a str {
         self.peek();
-        let inside = |c: char| c.is_alphanumeric() || "_-.".contains(c);
-        let end = self.rest.find(|c| !inside(c)).unwrap_or(self.rest.len());
+        let end = self.rest.find(|c| !is_of_a_word(c)).unwrap_or(self.rest.len());
         self.advance(end)
     }
 

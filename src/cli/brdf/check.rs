@@ -89,6 +89,7 @@ impl Run<'_> {
         for argument in &self.materials.materials {
             let loaded = load(argument, wanted.format);
             self.envelope.input(loaded.input);
+            loaded.spectra.into_iter().for_each(|s| self.envelope.input(s));
             let prepared = (loaded.subject)
                 .and_then(|read| prepare(argument, &read.value, wanted, self.default_nm).map(|ready| (read, ready)));
             match prepared {

@@ -1,10 +1,13 @@
-//! `brdf convert`: a material as a MERL, ALTA or CSV file.
+//! `brdf convert`: materials as MERL, ALTA or CSV files.
 
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use rayon::prelude::*;
+use serde_json::json;
 
-use super::load::{BandArgs, Subject, load, on_bands, prepare};
+use super::load::{BandArgs, Loaded, Subject, load, on_bands, prepare};
 use super::numbers::{Bins, Numbers, check_theta_above};
 use crate::brdf::Brdf;
 use crate::brdf::format::alta::{self, Encoding};
@@ -12,9 +15,10 @@ use crate::brdf::format::convert::{Net, bins, nodes, sampled};
 use crate::brdf::format::{csv, merl};
 use crate::brdf::table::{Channel, Error, Resolution, Table};
 use crate::cli::notes::Notes;
-use crate::cli::output::write_file;
+use crate::cli::places::Places;
 use crate::cli::{Failure, Talk};
 use crate::finding::{Checked, Finding, Location};
+use crate::report::envelope::{Envelope, Input};
 
 /// Wavelengths of a model where none are given, nm: red, green, blue.
 const RGB_NM: [f64; 3] = [650.0, 550.0, 450.0];
@@ -41,16 +45,25 @@ impl Target {
             _ => None,
         }
     }
+
+    /// The ending of its files.
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Merl => "binary",
+            Self::Alta | Self::AltaBinary => "alta",
+            Self::Csv => "csv",
+        }
+    }
 }
 
-/// A material, the file to write, and where the material is asked.
+/// Materials, the files to write, and where the materials are asked.
 #[derive(Debug, Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct ConvertArgs {
-    /// A measured table, a description such as 'ggx(alpha=0.1, medium=Au)', a TOML file, or `-`.
-    #[arg(value_name = "MATERIAL")]
-    material: String,
-    /// The file to write, or `-`. An ending .binary (MERL), .alta or .csv says the format.
+    /// Measured tables, descriptions such as 'ggx(alpha=0.1, medium=Au)', TOML files, or `-`.
+    #[arg(required = true, value_name = "MATERIAL")]
+    materials: Vec<String>,
+    /// The file to write, a folder for many (`DIR/`), or `-`. An ending .binary (MERL), .alta or .csv says the format.
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// The format, where the name of the output does not say it.
@@ -77,12 +90,16 @@ pub(in crate::cli) struct ConvertArgs {
     /// Azimuths of incidence, for anisotropic materials; 0:330:30.
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     phi_i: Option<Numbers>,
+    /// One JSON document: what was written where, and the findings.
+    #[arg(long)]
+    json: bool,
 }
 
 const EXAMPLES: &str = "Examples:
   photopic brdf convert paint.bsdf -o paint.csv
   photopic brdf convert paint.csv --wavelength 650,550,450 --fill -o paint.binary
   photopic brdf convert 'ggx(alpha=0.1, medium=Au)' -o gold.binary
+  photopic brdf convert felt.bsdf paint.csv 'ggx(alpha=0.1, eta=1.5)' --to alta -o tables/
   photopic brdf convert gold.binary --theta-i 0:80:10 --theta-o 0:80:2 --phi 0,180 -o - --to csv";
 
 /// A range of angles for those that are not given.
@@ -139,8 +156,8 @@ impl ConvertArgs {
         }
     }
 
-    fn encode(&self, target: Target, material: &Material<'_>) -> Result<Checked<Vec<u8>>, String> {
-        let wrong = |e: Error| format!("{}: {e}", self.material);
+    fn encode(&self, path: &str, target: Target, material: &Material<'_>) -> Result<Checked<Vec<u8>>, String> {
+        let wrong = |e: Error| format!("{path}: {e}");
         let Material { brdf, bands, table } = *material;
         let encoding = match target {
             Target::Merl => {
@@ -178,39 +195,96 @@ struct Material<'a> {
 }
 
 pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure> {
-    let path = &arguments.material;
+    let paths = &arguments.materials;
     let target = arguments.to.or_else(|| Target::of_name(&arguments.output)).ok_or_else(|| {
         let output = arguments.output.display();
         Failure::Message(format!("{output}: expected a name ending in .binary, .alta or .csv, or --to FORMAT"))
     })?;
     arguments.check(target)?;
-    let inputs = std::slice::from_ref(path);
-    let loaded = load(path, arguments.bands.format);
-    let Checked { value: subject, findings } = loaded.subject.map_err(Failure::Message)?;
-    let notes = Notes::new(inputs, talk);
-    notes.print(&findings);
+    if arguments.json && arguments.output == Path::new("-") {
+        let message = "-: standard output holds the JSON document; expected the name of a file or folder for the table";
+        return Err(Failure::Message(message.to_owned()));
+    }
+    let places = Places::of(paths, paths, &arguments.output, target.ending())?;
+    places.prepare()?;
+    let mut notes = Notes::new(paths, talk);
+    let settings =
+        json!({"format": target.to_possible_value().map(|v| v.get_name().to_owned()), "fill": arguments.fill});
+    let mut envelope = Envelope::begin(Vec::new(), "brdf convert", &settings)?;
+    let indices: Vec<usize> = (0..paths.len()).collect();
+    for indices in indices.chunks(rayon::current_num_threads()) {
+        let done: Vec<Done> = indices.par_iter().map(|i| one(arguments, &places, target, *i)).collect();
+        for (done, path) in done.into_iter().zip(indices.iter().map(|i| &paths[*i])) {
+            done.inputs.into_iter().for_each(|input| envelope.input(input));
+            notes.print(&done.findings);
+            done.findings.into_iter().for_each(|f| envelope.finding(f));
+            match done.outcome {
+                Ok(output) => envelope.result(&json!({"path": path, "output": output.display().to_string()}))?,
+                Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
+                Err(failure) => {
+                    let message = failure.to_string();
+                    notes.refuse(&message);
+                    envelope.finding(Finding::error("B000", message).at(Location::default().in_file(path)));
+                }
+            }
+        }
+    }
+    let document = envelope.end()?;
+    if arguments.json {
+        io::stdout().write_all(&document)?;
+    }
+    if notes.failed { Err(Failure::Reported) } else { Ok(()) }
+}
+
+/// What became of an input.
+struct Done {
+    /// The material's file and those of its spectra.
+    inputs: Vec<Input>,
+    findings: Vec<Finding>,
+    /// Where the table was written.
+    outcome: Result<PathBuf, Failure>,
+}
+
+/// Loads, encodes and writes one material.
+fn one(arguments: &ConvertArgs, places: &Places, target: Target, index: usize) -> Done {
+    let path = &arguments.materials[index];
+    let Loaded { input, spectra, subject, .. } = load(path, arguments.bands.format);
+    let inputs = std::iter::once(input).chain(spectra).collect();
+    let mut findings = Vec::new();
+    let write = || -> Result<PathBuf, Failure> {
+        let place = places.main(index).map_err(Failure::Message)?;
+        let read = subject.map_err(Failure::Message)?;
+        findings.extend(read.findings);
+        let written = encoded(arguments, path, target, &read.value).map_err(Failure::Message)?;
+        findings.extend(written.findings.into_iter().map(|f| f.at(Location::default().in_file(path))));
+        places.write(index, &[("", &written.value)])?;
+        Ok(place.to_owned())
+    };
+    let outcome = write();
+    Done { inputs, findings, outcome }
+}
+
+/// The bytes of a material's file.
+fn encoded(arguments: &ConvertArgs, path: &str, target: Target, subject: &Subject) -> Result<Checked<Vec<u8>>, String> {
     let (described, table);
-    let material = match &subject {
+    let material = match subject {
         Subject::Described(_) => {
-            described = prepare(path, &subject, &arguments.bands, &RGB_NM).map_err(Failure::Message)?;
+            described = prepare(path, subject, &arguments.bands, &RGB_NM)?;
             Material { brdf: described.brdf.as_ref(), bands: &described.bands, table: None }
         }
         Subject::Measured(file) => {
-            table = on_bands(path, &file.table, &arguments.bands).map_err(Failure::Message)?;
+            table = on_bands(path, &file.table, &arguments.bands)?;
             Material { brdf: &table, bands: table.channels(), table: Some(&table) }
         }
     };
     if material.brdf.is_delta() {
         let words = "nothing but a Dirac lobe, which has no values; expected a material with values";
-        return Err(Failure::Message(format!("{path}: {words}")));
+        return Err(format!("{path}: {words}"));
     }
-    let written = arguments.encode(target, &material).map_err(Failure::Message)?;
-    let mut found = written.findings;
+    let mut written = arguments.encode(path, target, &material)?;
     if material.brdf.has_delta() {
         let words = "light leaves in a Dirac lobe, which has a reflectance and no value: it is not in the file";
-        found.push(Finding::warning("B006", words));
+        written.findings.push(Finding::warning("B006", words));
     }
-    let found: Vec<Finding> = found.into_iter().map(|f| f.at(Location::default().in_file(path))).collect();
-    notes.print(&found);
-    write_file(&arguments.output, &written.value, inputs)
+    Ok(written)
 }

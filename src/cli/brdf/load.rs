@@ -13,6 +13,8 @@ use crate::brdf::Brdf;
 use crate::brdf::description::{Bands, Error, Material, toml};
 use crate::brdf::format::{self, Format, merl};
 use crate::brdf::table::{Channel, Table};
+use crate::cli::convert::single;
+use crate::constants::SecondRadiation;
 use crate::finding::{Checked, Finding};
 use crate::report::envelope::Input;
 
@@ -25,7 +27,8 @@ pub(super) struct MaterialArgs {
     /// Materials: a description such as 'ggx(alpha=0.1, medium=Au)', a TOML file, a measured table, or `-`.
     ///
     /// Models: lambert, oren-nayar, mirror, dielectric, conductor, phong, blinn-phong, ward, ashikhmin-shirley, ggx,
-    /// beckmann, blinn, abc, sgd; `0.3*MODEL(…) + MODEL(…)` is a sum. A wrong parameter is answered with the model's list of
+    /// beckmann, blinn, abc, sgd; `0.3*MODEL(…) + MODEL(…)` is a sum. A spectrum is
+    /// `[[400, 0.1], [700, 0.5]]` or a file, `lambert(reflectance=wood.csv)`. A wrong parameter is answered with the model's list of
     /// them, and `brdf info` prints it. Tables: the formats of `--format`, told apart by their content.
     #[arg(required = true, value_name = "MATERIAL")]
     pub materials: Vec<String>,
@@ -69,12 +72,40 @@ pub(super) struct Loaded {
     /// What to call it: the file and the name in it, or the description.
     pub name: String,
     pub input: Input,
+    /// The files of spectra that its description names.
+    pub spectra: Vec<Input>,
     /// The material, and what its reader noticed.
     pub subject: Result<Checked<Subject>, String>,
 }
 
-/// Reads a material: a measured table, a description in a file, or the description itself.
+/// Reads a material: a measured table, a description in a file, or the description itself. The spectra that a description
+/// names are beside its file.
 pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
+    let mut loaded = read(argument, format);
+    if let Ok(Checked { value: Subject::Described(material), .. }) = &mut loaded.subject {
+        let folder = Path::new(argument).parent().filter(|_| !argument.contains('(')).unwrap_or(Path::new(""));
+        let spectra = &mut loaded.spectra;
+        let with = material.clone().with_spectra(|file| {
+            let path = folder.join(file).display().to_string();
+            if !Path::new(&path).is_file() {
+                return Err(format!("{path}: there is no such file; expected a spectrum"));
+            }
+            let found = single(&path, None, SecondRadiation::default()).map_err(|e| e.message)?;
+            if !spectra.contains(&found.input) {
+                spectra.push(found.input);
+            }
+            Ok(found.measured.spectrum)
+        });
+        match with {
+            Ok(with) => *material = with,
+            Err(error) => loaded.subject = Err(in_file(argument, &error)),
+        }
+    }
+    loaded
+}
+
+/// The same without the spectra.
+fn read(argument: &str, format: Option<Format>) -> Loaded {
     let mut input = Input { path: argument.to_owned(), sha256: None };
     let mut name = argument.to_owned();
     let is_file = argument == "-" || Path::new(argument).exists();
@@ -86,7 +117,7 @@ pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
             let hint = "expected a file, or a description such as 'lambert(reflectance=0.5)'";
             Err(format!("{argument}: there is no such file; {hint}"))
         };
-        return Loaded { name, input, subject };
+        return Loaded { name, input, spectra: Vec::new(), subject };
     }
     if format.is_none_or(|f| f == Format::Merl)
         && let Some(loaded) = merl_file(argument)
@@ -100,7 +131,7 @@ pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
             of_bytes(argument, &bytes, format, &mut name)
         }
     };
-    Loaded { name, input, subject }
+    Loaded { name, input, spectra: Vec::new(), subject }
 }
 
 /// The same of what must be a measured table.
@@ -144,6 +175,7 @@ fn merl_file(path: &str) -> Option<Loaded> {
     Some(Loaded {
         name: path.to_owned(),
         input: Input { path: path.to_owned(), sha256: sha256.ok() },
+        spectra: Vec::new(),
         subject: read.map_err(|e| e.in_file(path).to_string()).map(|read| measured(path, read.map(table))),
     })
 }

@@ -1,19 +1,18 @@
 //! `lamp convert`: lamp files in another format.
 
-mod place;
 mod target;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rayon::prelude::*;
 
-use self::place::Places;
 use self::target::{Choice, Target, encode};
 use super::files::FILES_AT_ONCE;
 use super::load::load;
 use super::transform_args::TransformArgs;
 use crate::cli::notes::Notes;
+use crate::cli::places::Places;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
 use crate::luminaire::format::ies;
@@ -57,7 +56,7 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
     let choice = Choice { target, lm63: arguments.lm63, pixels: arguments.pixels };
     let read: Vec<String> =
         arguments.files.iter().map(String::as_str).chain(arguments.transform.inputs()).map(str::to_owned).collect();
-    let places = Places::of(&arguments.files, &read, &arguments.output, target)?;
+    let places = Places::of(&arguments.files, &read, &arguments.output, target.ending())?;
     places.prepare()?;
     let mut notes = Notes::new(&arguments.files, talk);
     let indices: Vec<usize> = (0..arguments.files.len()).collect();
@@ -105,5 +104,10 @@ fn write_one(
         finding.location.path.get_or_insert_with(|| path.clone());
         finding
     }));
-    places.write(index, choice.target, &encoded.value)
+    if !choice.target.is_one_file() && places.main(index).is_ok_and(|main| main == Path::new("-")) {
+        let message = "-: standard output holds one file and this format has several; expected a name";
+        return Err(Failure::Message(message.to_owned()));
+    }
+    let named: Vec<(&str, &[u8])> = encoded.value.iter().map(|f| (f.suffix.as_str(), f.bytes.as_slice())).collect();
+    places.write(index, &named)
 }

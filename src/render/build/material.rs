@@ -125,7 +125,8 @@ impl Builder<'_> {
     }
 
     fn model(&self, text: &Spanned<String>, bands: &Bands) -> Result<Box<dyn Brdf>, Error> {
-        let model = Model::from_str(text.get_ref()).map_err(|e| place(self, text, &e))?;
+        let model = Model::from_str(text.get_ref()).and_then(|m| m.with_spectra(|file| self.files.spectrum(file)));
+        let model = model.map_err(|e| place(self, text, &e))?;
         model.prepare(BrdfBands::Wavelengths(bands.wavelengths_nm())).map_err(|e| place(self, text, &e))
     }
 

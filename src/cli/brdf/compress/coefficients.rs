@@ -51,7 +51,7 @@ pub(super) fn encode(arguments: &EncodeArgs, talk: Talk) -> Result<(), Failure> 
     let settings = json!({"basis": arguments.basis, "components": count, "wavelengths_nm": arguments.wavelength.0});
     let mut envelope = Envelope::begin(Vec::new(), "brdf compress encode", &settings)?;
     let loaded = load(&arguments.material, file.grid.resolution(), &arguments.wavelength.0);
-    envelope.input(loaded.input);
+    loaded.inputs.into_iter().for_each(|input| envelope.input(input));
     let (table, mut findings) = loaded.table.map_err(Failure::Message)?;
     let failed = |e: Error| Failure::Message(format!("{}: {e}", arguments.material));
     let mut encoded = Encoded { channels: table.channels().to_vec(), coefficients: Vec::new(), rms_ln: Vec::new() };

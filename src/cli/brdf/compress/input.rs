@@ -8,7 +8,8 @@ use crate::report::envelope::Input;
 
 /// A material read.
 pub(super) struct Loaded {
-    pub input: Input,
+    /// The material's file and those of its spectra.
+    pub inputs: Vec<Input>,
     /// The table and the findings of its file, or the message of what went wrong.
     pub table: Result<(HalfAngle, Vec<Finding>), String>,
 }
@@ -23,7 +24,7 @@ pub(super) fn load(argument: &str, resolution: Resolution, wavelengths_nm: &[f64
         };
         Ok((table?, read.findings))
     });
-    Loaded { input: material.input, table }
+    Loaded { inputs: std::iter::once(material.input).chain(material.spectra).collect(), table }
 }
 
 fn described(

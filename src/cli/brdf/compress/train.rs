@@ -44,9 +44,9 @@ impl SetArgs {
         envelope: &mut Envelope<Vec<u8>>,
     ) -> Result<(Collection, Vec<Input>), Failure> {
         let mut collection = Collection::new(self.resolution.0);
-        let mut inputs = Vec::new();
+        let mut all_inputs = Vec::new();
         for argument in &self.materials {
-            let Loaded { input, table } = load(argument, self.resolution.0, &self.wavelength.0);
+            let Loaded { inputs, table } = load(argument, self.resolution.0, &self.wavelength.0);
             let added = table.and_then(|(table, findings)| {
                 collection.add(&table).map_err(|e| format!("{argument}: {e}"))?;
                 notes.print(&findings);
@@ -57,12 +57,12 @@ impl SetArgs {
                 notes.refuse(&message);
                 envelope.finding(Finding::error("B000", message).at(Location::default().in_file(argument)));
             }
-            envelope.input(input.clone());
-            inputs.push(input);
+            inputs.iter().for_each(|input| envelope.input(input.clone()));
+            all_inputs.extend(inputs);
             notes.progress.inc(1);
         }
         // A set that lacks a material is another set.
-        if notes.failed { Err(Failure::Reported) } else { Ok((collection, inputs)) }
+        if notes.failed { Err(Failure::Reported) } else { Ok((collection, all_inputs)) }
     }
 }
 

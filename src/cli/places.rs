@@ -1,12 +1,10 @@
-//! Where the files of `lamp convert` go: standard output, one name, or a folder.
+//! Where the files of a conversion of several inputs go: standard output, one name, or a folder.
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::target::Target;
-use crate::cli::{Failure, output};
-use crate::luminaire::export::ExportFile;
+use super::{Failure, output};
 
 /// The places of the main files, one for each input, in order.
 pub(super) struct Places {
@@ -20,8 +18,8 @@ pub(super) struct Places {
 impl Places {
     /// The places for inputs and an output as the user gave them.
     ///
-    /// `read` are all files that the run reads, which none of the places may be.
-    pub(super) fn of(inputs: &[String], read: &[String], output: &Path, target: Target) -> Result<Self, Failure> {
+    /// `read` are all files that the run reads, which none of the places may be; `ending` is that of the files in a folder.
+    pub(super) fn of(inputs: &[String], read: &[String], output: &Path, ending: &str) -> Result<Self, Failure> {
         let is_folder = output.is_dir() || output.to_string_lossy().ends_with(std::path::is_separator);
         if !is_folder && inputs.len() > 1 {
             let message = format!("{}: one output for {} inputs; expected a folder", output.display(), inputs.len());
@@ -35,11 +33,10 @@ impl Places {
         let mut taken: HashMap<String, usize> = HashMap::new();
         let mut mains = Vec::with_capacity(inputs.len());
         for (index, input) in inputs.iter().enumerate() {
-            let name = if input == "-" { "stdin" } else { input.as_str() };
-            let stem = Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+            let stem = stem_of(input);
             let first = *taken.entry(stem.to_lowercase()).or_insert(index);
             mains.push(if first == index {
-                Ok(output.join(format!("{stem}.{}", target.ending())))
+                Ok(output.join(format!("{stem}.{ending}")))
             } else {
                 Err(format!(
                     "{input}: would be written to the same file as {}; expected different names",
@@ -64,17 +61,19 @@ impl Places {
         Ok(main.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default())
     }
 
-    /// Writes the files for an input, all or none.
-    pub(super) fn write(&self, index: usize, target: Target, files: &[ExportFile]) -> Result<(), Failure> {
-        let main = self.mains[index].as_ref().map_err(|e| Failure::Message(e.clone()))?;
-        if main == Path::new("-") && !target.is_one_file() {
-            let message = "-: standard output holds one file and this format has several; expected a name";
-            return Err(Failure::Message(message.to_owned()));
-        }
+    /// Where the main file of an input goes, or why nowhere.
+    pub(super) fn main(&self, index: usize) -> Result<&Path, String> {
+        self.mains[index].as_ref().map(PathBuf::as_path).map_err(Clone::clone)
+    }
+
+    /// Writes the files for an input, all or none: the bytes of each, the first the main file, and with what its name ends
+    /// after the stem of the main file's.
+    pub(super) fn write(&self, index: usize, files: &[(&str, &[u8])]) -> Result<(), Failure> {
+        let main = self.main(index).map_err(Failure::Message)?;
         let stem = self.stem(index).map_err(Failure::Message)?;
         let mut named: Vec<(PathBuf, &[u8])> = Vec::with_capacity(files.len());
-        for (i, file) in files.iter().enumerate() {
-            let place = if i == 0 { main.clone() } else { main.with_file_name(format!("{stem}{}", file.suffix)) };
+        for (i, (suffix, bytes)) in files.iter().enumerate() {
+            let place = if i == 0 { main.to_owned() } else { main.with_file_name(format!("{stem}{suffix}")) };
             if named.iter().any(|(other, _)| *other == place) {
                 let message = "is the name of another file of this format; expected another name";
                 return Err(Failure::Message(format!("{}: {message}", place.display())));
@@ -82,10 +81,23 @@ impl Places {
             if fs::canonicalize(&place).is_ok_and(|p| self.inputs.contains(&p)) {
                 return Err(Failure::Message(output::overwrites(&place)));
             }
-            named.push((place, &file.bytes));
+            named.push((place, bytes));
         }
         output::write_files(&named)
     }
+}
+
+/// What the names of an input's files in a folder begin with: the input's own name without its ending, and of a description in
+/// words its letters and digits.
+fn stem_of(input: &str) -> String {
+    if input == "-" {
+        return "stdin".to_owned();
+    }
+    if input.contains('(') && !Path::new(input).exists() {
+        let words = input.split(|c: char| !(c.is_alphanumeric() || "._-".contains(c))).filter(|w| !w.is_empty());
+        return words.collect::<Vec<_>>().join("_");
+    }
+    Path::new(input).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 fn resolved(inputs: &[String]) -> HashSet<PathBuf> {
