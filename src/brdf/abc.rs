@@ -18,6 +18,8 @@
 //!
 //! Reference: J. Löw, J. Kronander, A. Ynnerman & J. Unger, *BRDF Models for Accurate and Efficient Rendering of Glossy Surfaces*,
 //! ACM TOG 31 (2012).
+//!
+#![doc = include_str!("../../docs/brdf/abc.svg")]
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 

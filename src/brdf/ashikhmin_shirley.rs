@@ -15,6 +15,8 @@
 //! Reciprocal, and the diffuse part conserves energy with the lobe; for small exponents the lobe by itself loses light.
 //!
 //! Reference: M. Ashikhmin & P. Shirley, *An Anisotropic Phong BRDF Model*, J. Graphics Tools 5 (2000).
+//!
+#![doc = include_str!("../../docs/brdf/ashikhmin-shirley.svg")]
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -11,6 +11,8 @@
 //! Pressed halon and matt paint come near it up to about 60°; no real surface keeps it towards grazing angles.
 //!
 //! Reference: J. H. Lambert, *Photometria* (1760).
+//!
+#![doc = include_str!("../../docs/brdf/lambert.svg")]
 
 use std::f64::consts::{FRAC_1_PI, PI};
 

@@ -19,6 +19,8 @@
 //! at 0 there. σ = 0 is Lambert in both.
 //!
 //! Reference: M. Oren & S. K. Nayar, *Generalization of Lambert's Reflectance Model*, SIGGRAPH 1994, eqs. 27–30.
+//!
+#![doc = include_str!("../../docs/brdf/oren-nayar.svg")]
 
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
 

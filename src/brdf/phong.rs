@@ -20,6 +20,9 @@
 //!
 //! References: B. T. Phong, CACM 18 (1975); J. F. Blinn, SIGGRAPH 1977; R. R. Lewis, Comput. Graph. Forum 13 (1994);
 //! F. Giesen, *Phong and Blinn-Phong Normalization Factors* (2009).
+//!
+#![doc = include_str!("../../docs/brdf/phong.svg")]
+#![doc = include_str!("../../docs/brdf/blinn-phong.svg")]
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 

@@ -21,6 +21,8 @@
 //!
 //! Reference: M. M. Bagher, C. Soler & N. Holzschuch, *Accurate Fitting of Measured Reflectances using a Shifted Gamma
 //! Micro-facet Distribution*, Comput. Graph. Forum 31 (2012).
+//!
+#![doc = include_str!("../../docs/brdf/sgd.svg")]
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 

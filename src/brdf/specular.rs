@@ -12,6 +12,8 @@
 //!
 //! The parameters of an interface are those of [`fresnel`](super::fresnel). [`Brdf::evaluate`] is zero, [`Brdf::sample`] gives
 //! the mirror direction with its flag.
+//!
+#![doc = include_str!("../../docs/brdf/specular.svg")]
 
 use glam::DVec3;
 

@@ -11,6 +11,8 @@
 //! References: P. Beckmann & A. Spizzichino, *The Scattering of Electromagnetic Waves from Rough Surfaces* (1963); B. Walter et
 //! al., EGSR 2007; E. Heitz & E. d'Eon, *Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals*,
 //! EGSR 2014.
+//!
+#![doc = include_str!("../../../docs/brdf/beckmann.svg")]
 
 use std::f64::consts::{FRAC_2_SQRT_PI, PI};
 

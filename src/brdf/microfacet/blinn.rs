@@ -10,6 +10,8 @@
 //! F = 1, 89°); with V-cavities, which suit any distribution and are the default, they do not.
 //!
 //! References: J. F. Blinn, SIGGRAPH 1977; B. Walter et al., EGSR 2007, eqs. 27, 30.
+//!
+#![doc = include_str!("../../../docs/brdf/blinn.svg")]
 
 use std::f64::consts::TAU;
 

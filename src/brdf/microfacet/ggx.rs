@@ -7,6 +7,8 @@
 //!
 //! References: T. S. Trowbridge & K. P. Reitz, JOSA 65 (1975); B. Walter et al., EGSR 2007; E. Heitz, *Sampling the GGX
 //! Distribution of Visible Normals*, JCGT 7 (2018).
+//!
+#![doc = include_str!("../../../docs/brdf/ggx.svg")]
 
 use std::f64::consts::{PI, TAU};
 

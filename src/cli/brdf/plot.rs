@@ -112,8 +112,24 @@ pub(super) fn plot(arguments: &PlotArgs, talk: Talk) -> Result<(), Failure> {
         PlotKind::Slice => vec![coloured(slice_panel)?],
         PlotKind::Lobe => vec![surface_panel(brdf.as_ref(), middle, band).into()],
     };
+    let panels: Vec<Panel> = match <[Panel; 1]>::try_from(panels) {
+        Ok([panel]) => vec![of_material(panel, file_name(path, &loaded.name))],
+        Err(panels) => panels,
+    };
     let bytes = draw(&panels, None, format).map_err(|e| Failure::Message(e.to_string()))?;
     write_file(&arguments.output, &bytes, std::slice::from_ref(path))
+}
+
+/// A drawing that stands alone says what it is of; the lobes of [`lobe_panel`] do so anyway.
+fn of_material(mut panel: Panel, name: &str) -> Panel {
+    let title = match &mut panel {
+        Panel::Curves(panel) => &mut panel.title,
+        Panel::Raster(panel) => &mut panel.title,
+        Panel::Surface(panel) => &mut panel.title,
+        _ => return panel,
+    };
+    *title = format!("{name}, {title}");
+    panel
 }
 
 /// A material's name without the folders of its file.
