@@ -16,6 +16,7 @@ mod output;
 mod places;
 mod render;
 mod tables;
+mod trade;
 mod writer;
 
 /// Light as physics measures it, as people see it, and back.
@@ -62,6 +63,9 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Parts of a render (`render --shard`) into its readings and pictures.
     Merge(render::MergeArgs),
+    /// What speed costs in accuracy, measured on an input: settings timed and compared, and the fastest that meets an error.
+    #[command(subcommand)]
+    Trade(trade::TradeCommand),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -119,6 +123,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Capture(command) => capture::run(command, cli.talk),
         Command::Render(arguments) => render::run(&arguments, cli.talk),
         Command::Merge(arguments) => render::merge(&arguments, cli.talk),
+        Command::Trade(command) => trade::run(command, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

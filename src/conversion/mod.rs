@@ -315,7 +315,7 @@ impl Resampling {
     /// The largest grid made.
     const MOST_SAMPLES: f64 = 1e7;
 
-    fn apply(&self, spectrum: &Spectrum) -> Result<Spectrum, Error> {
+    pub(crate) fn apply(&self, spectrum: &Spectrum) -> Result<Spectrum, Error> {
         if spectrum.sampling() == Sampling::Lines {
             return Err(ResampleError::Lines.into());
         }

@@ -64,6 +64,7 @@ mod spectrum_curves;
 mod surface;
 mod svg;
 pub mod terminal;
+mod trade;
 mod web;
 
 pub use angular::{AngularCurve, MOST_ANGULAR_CURVES};
@@ -84,6 +85,7 @@ pub use polar::PolarPanel;
 pub use raster::RasterPanel;
 pub use spectrum::{Curve, CurveKind, SpectrumPanel, Weighting};
 pub use surface::SurfacePanel;
+pub use trade::{TradePanel, trade_panel};
 pub use web::WebPanel;
 
 /// The kind of file.
@@ -128,6 +130,8 @@ pub enum Panel {
     Curves(CurvesPanel),
     /// Data against a model.
     Dots(DotsPanel),
+    /// Error over time of settings.
+    Trade(TradePanel),
     /// A picture.
     Raster(RasterPanel),
     /// A lobe in space.
@@ -159,6 +163,7 @@ panels! {
     Lobe: LobePanel,
     Curves: CurvesPanel,
     Dots: DotsPanel,
+    Trade: TradePanel,
     Raster: RasterPanel,
     Surface: SurfacePanel,
     FalseColour: FalseColourPanel

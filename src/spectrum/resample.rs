@@ -21,6 +21,22 @@ pub enum Interpolation {
     Pchip,
 }
 
+impl Interpolation {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Linear, Self::Sprague, Self::Cubic, Self::Pchip];
+
+    /// Its name on the command line and in results.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Sprague => "sprague",
+            Self::Cubic => "cubic",
+            Self::Pchip => "pchip",
+        }
+    }
+}
+
 /// What stands beyond the ends of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use serde::Deserialize;
 
 use super::measures;
 use crate::colorimetry::adaptation::Transform;
@@ -99,6 +100,9 @@ pub(super) struct Integration {
     /// What --resample puts beyond the ends of the samples.
     #[arg(long, value_enum, default_value = "refuse", requires = "resample")]
     pub extrapolation: ExtrapolationArg,
+    /// A file with rule, range, step and interpolation, as `trade spectrum --settings` writes it; options given here go before it.
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
     /// K_m in lm/W.
     #[arg(long, value_name = "LM_PER_W", default_value_t = K_M, value_parser = positive)]
     pub k_m: f64,
@@ -241,7 +245,8 @@ pub(super) enum Group {
     Shape,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, ValueEnum, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(in crate::cli) enum RuleArg {
     /// Δλ Σ S w (CIE 15).
     Summation,
@@ -264,7 +269,8 @@ impl From<RuleArg> for Rule {
     }
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, ValueEnum, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(super) enum InterpolationArg {
     /// Straight lines.
     Linear,

@@ -139,6 +139,8 @@ pub(super) fn open(
 /// The one spectrum of an input, and what there is to say of it.
 pub(in crate::cli) struct Single {
     pub measured: Measured,
+    /// Made by name: its samples are what it is.
+    pub defined: bool,
     pub input: Input,
     pub findings: Vec<Finding>,
 }
@@ -160,7 +162,7 @@ pub(in crate::cli) fn single(path: &str, select: Option<&str>, c2: SecondRadiati
     let wanted = |item: &Item| select.is_none_or(|n| n.to_lowercase() == item.measured.name.to_lowercase());
     let mut chosen = items.into_iter().filter(wanted);
     match (chosen.next(), chosen.next()) {
-        (Some(item), None) => Ok(Single { measured: item.measured, input, findings }),
+        (Some(item), None) => Ok(Single { measured: item.measured, defined: item.defined, input, findings }),
         _ => {
             let some: Vec<&str> = names.iter().take(12).map(String::as_str).collect();
             let more = if names.len() > some.len() { ", …" } else { "" };
@@ -192,6 +194,8 @@ fn source(name: &str, c2: SecondRadiation) -> Result<Loaded, Refused> {
         );
     }
     let measured = Measured { name: source.name, quantity: source.quantity, spectrum: source.spectrum };
-    let items = vec![Item { measured, printed: Vec::new(), defined: true }];
+    // A blackbody is Planck's law, which our samples follow; all else is tabulated or made of tables.
+    let defined = !measured.name.starts_with("blackbody");
+    let items = vec![Item { measured, printed: Vec::new(), defined }];
     Ok(Loaded::Spectra(items, Input { path: name.to_owned(), sha256: None }, findings))
 }

@@ -23,6 +23,7 @@ mod args;
 mod input;
 mod measures;
 mod picture;
+mod settings;
 mod stream;
 
 pub(super) use args::{ConvertArgs, RuleArg, positive};
@@ -64,7 +65,10 @@ struct Done {
     drawn: Option<picture::Kept>,
 }
 
-pub(super) fn run(arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
+pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
+    if let Some(path) = arguments.integration.settings.clone() {
+        settings::apply(&path, &mut arguments.integration)?;
+    }
     let settings = arguments.settings();
     settings.geometry.check().map_err(|e| Failure::Message(e.to_string()))?;
     if arguments.files.iter().filter(|f| *f == "-").count() > 1 {

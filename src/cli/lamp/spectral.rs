@@ -112,7 +112,7 @@ pub(super) fn spectral(arguments: &SpectralArgs, talk: Talk) -> Result<(), Failu
     let given = match &arguments.spd {
         None => None,
         Some(spd) => match single(spd, arguments.select.as_deref(), settings.c2) {
-            Ok(Single { measured, input, findings }) => {
+            Ok(Single { measured, input, findings, .. }) => {
                 envelope.input(input);
                 // That a spectrum is relative does not matter here.
                 all.extend(findings.into_iter().filter(|f| !matches!(f.code, "S010" | "P001")));

@@ -1,0 +1,22 @@
+//! `trade`: what each speed knob costs in accuracy, measured on the user's own input; one file per kind of input.
+
+mod output;
+mod spectrum;
+mod target;
+
+use clap::Subcommand;
+
+use super::{Failure, Talk};
+
+/// Kinds of input.
+#[derive(Debug, Subcommand)]
+pub(super) enum TradeCommand {
+    /// Step, interpolation, rule, range and precision of the integration of a spectrum.
+    Spectrum(spectrum::SpectrumArgs),
+}
+
+pub(super) fn run(command: TradeCommand, talk: Talk) -> Result<(), Failure> {
+    match command {
+        TradeCommand::Spectrum(a) => spectrum::trade(&a, talk),
+    }
+}
