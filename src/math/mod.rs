@@ -9,3 +9,4 @@ pub mod noise;
 pub mod order;
 pub mod random;
 pub mod sampling;
+pub mod student;

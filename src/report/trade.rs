@@ -33,7 +33,7 @@ impl Answer<'_> {
 
     /// An error in words: relative ones in per cent.
     fn words(&self, error: f64) -> String {
-        let figure = self.sweep.figures[self.figure];
+        let figure = &self.sweep.figures[self.figure];
         match (figure.measure, figure.unit) {
             (Measure::Relative, _) => format!("{} %", significant(100.0 * error, DIGITS)),
             (_, "") => significant(error, DIGITS),
@@ -52,7 +52,7 @@ impl Answer<'_> {
         let (sweep, front) = (self.sweep, self.sweep.front(self.figure));
         let errors = |of: &[Option<Estimate>]| {
             let pairs = sweep.figures.iter().zip(of);
-            pairs.map(|(f, e)| (f.key.to_owned(), json!(e))).collect::<Map<_, _>>()
+            pairs.map(|(f, e)| (f.key.to_string(), json!(e))).collect::<Map<_, _>>()
         };
         let trial = |i: usize| {
             let t = &sweep.trials[i];
@@ -69,10 +69,10 @@ impl Answer<'_> {
         let reference = sweep.figures.iter().zip(&sweep.reference_errors);
         json!({
             "path": self.path,
-            "figure": sweep.figures[self.figure],
+            "figure": &sweep.figures[self.figure],
             "target": self.target,
             "reference": sweep.reference,
-            "reference_errors": reference.map(|(f, e)| (f.key.to_owned(), json!(e))).collect::<Map<_, _>>(),
+            "reference_errors": reference.map(|(f, e)| (f.key.to_string(), json!(e))).collect::<Map<_, _>>(),
             "threads": rayon::current_num_threads(),
             "trials": (0..sweep.trials.len()).map(trial).collect::<Vec<_>>(),
             "effects": effects.collect::<Map<_, _>>(),
@@ -86,7 +86,7 @@ impl Answer<'_> {
         let missed = self.target.filter(|_| self.recommended().is_none()).map(|target| {
             let bounds = (0..self.sweep.trials.len()).filter(|i| self.sweep.trials[*i].offered);
             let least = bounds.filter_map(|i| self.sweep.bound(i, self.figure)).fold(f64::INFINITY, f64::min);
-            let (key, least) = (self.sweep.figures[self.figure].key, self.words(least));
+            let (key, least) = (&self.sweep.figures[self.figure].key, self.words(least));
             let message = format!("no setting brings {key} within {}; the best is within {least}", self.words(target));
             Finding::error("T001", message)
         });
@@ -96,7 +96,7 @@ impl Answer<'_> {
                 format!("`{knob}` changes the error by no more than the reference's own error or the scatter");
             Some(
                 Finding::info("T002", message)
-                    .hint(&format!("its time differs by a factor of {:.2}", effect.time_ratio)),
+                    .hint(format!("its time differs by a factor of {:.2}", effect.time_ratio)),
             )
         });
         missed.into_iter().chain(idle).collect()
@@ -105,7 +105,7 @@ impl Answer<'_> {
     /// For people: the front, what is recommended, and what each knob does.
     #[must_use]
     pub fn text(&self) -> String {
-        let (sweep, key) = (self.sweep, self.sweep.figures[self.figure].key);
+        let (sweep, key) = (self.sweep, &self.sweep.figures[self.figure].key);
         let mut out = format!("{}\n  reference   {}\n", self.path, sweep.reference);
         let own = sweep.reference_errors[self.figure].map_or_else(|| "unknown".to_owned(), |e| self.words(e));
         let _ = writeln!(out, "  its error   {own} ({key})");

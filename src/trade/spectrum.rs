@@ -27,8 +27,10 @@ const RANGES_NM: [(f64, f64); 3] = [(360.0, 830.0), (380.0, 780.0), (380.0, 770.
 /// The resampling of the spline goes to this part of the step.
 const REFINEMENT: f64 = 4.0;
 
+/// How many figures are watched.
+const COUNT: usize = 10;
 /// The figures watched, in the order of the errors.
-pub const FIGURES: [Figure; 10] = [
+pub static FIGURES: [Figure; COUNT] = [
     Figure::relative("radiometric"),
     Figure::relative("photopic"),
     Figure::relative("scotopic"),
@@ -182,7 +184,7 @@ fn choices(spectrum: &Spectrum) -> Vec<Choice> {
 }
 
 /// The values of [`FIGURES`], chromaticity as u′ and v′.
-type Values = [Option<[f64; 2]>; FIGURES.len()];
+type Values = [Option<[f64; 2]>; COUNT];
 
 fn figures(converter: &Converter, spectrum: &Spectrum) -> Result<Values, Error> {
     // The unit is of no concern: relative errors do not know it. An irradiance has all figures.

@@ -78,7 +78,7 @@ fn what_cannot_be_had_is_said() {
         (vec!["--error", "1e-9"], 1, "T001"),
         (vec!["--error", "5K"], 2, "expected per cent, such as 0.5%, or a fraction"),
         (vec!["--error", "much"], 2, "expected an error such as 0.5%, 0.005 or 20K"),
-        (vec!["--figure", "taste"], 2, "--figure taste: no such figure; expected one of radiometric, photopic"),
+        (vec!["--figure", "taste"], 2, "`taste`: no such figure; expected one of radiometric, photopic"),
         (vec!["--settings", "x.toml"], 2, "--error"),
         (vec!["--plot", "x.gif"], 2, "x.gif"),
         (vec!["-o", "x.svg", "--plot", "x.svg"], 2, "named for two outputs"),

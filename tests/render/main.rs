@@ -17,3 +17,4 @@ mod reflectometer;
 mod scenes;
 mod shapes;
 mod slab;
+mod trade;

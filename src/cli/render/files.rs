@@ -21,7 +21,7 @@ use crate::report::envelope::Input;
 use crate::spectrum::Spectrum;
 
 /// A scene's text and the path that its files are beside.
-pub(super) struct Scene {
+pub(in crate::cli) struct Scene {
     pub text: String,
     path: String,
     inputs: RefCell<Vec<Input>>,
@@ -33,7 +33,7 @@ fn checksum(bytes: &[u8]) -> Option<String> {
 
 impl Scene {
     /// Reads a scene; `-` is standard input, whose files are in the current folder.
-    pub(super) fn read(path: &str) -> Result<Self, Failure> {
+    pub(in crate::cli) fn read(path: &str) -> Result<Self, Failure> {
         let mut bytes = Vec::new();
         let done = if path == "-" {
             std::io::stdin().read_to_end(&mut bytes).map(|_| ())
@@ -50,7 +50,7 @@ impl Scene {
     }
 
     /// The scene and all files read for it.
-    pub(super) fn inputs(&self) -> Vec<Input> {
+    pub(in crate::cli) fn inputs(&self) -> Vec<Input> {
         self.inputs.borrow().clone()
     }
 

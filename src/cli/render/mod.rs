@@ -3,6 +3,7 @@
 mod audits;
 mod files;
 mod pictures;
+mod settings;
 mod sheets;
 mod state;
 mod work;
@@ -19,6 +20,8 @@ use crate::render::description::{self, Model, Solver};
 use crate::render::reading;
 use crate::render::spool::Share;
 use crate::report::render as report;
+pub(super) use files::Scene;
+use settings::Settings;
 use state::State;
 use work::{Job, Overrides, Work};
 
@@ -58,6 +61,9 @@ pub(super) struct RenderArgs {
     /// polarisation, lights of no flux. Both agree within their error bars.
     #[arg(long, value_name = "EXTENT", value_parser = model, conflicts_with = "shard")]
     model: Option<Model>,
+    /// A file with `[render]` keys in place of the scene's, as `trade render --settings` writes it; options given here go before it.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["preview", "checkpoint", "resume", "shard"])]
+    settings: Option<PathBuf>,
     /// Names all random numbers, instead of the scene's.
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
@@ -170,6 +176,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         meter_samples: a.meter_samples.or(preview(64)),
         seed: a.seed,
         model: a.model,
+        settings: a.settings.as_deref().map(Settings::read).transpose()?.unwrap_or_default(),
     };
     let work = Work::new(path, &overrides)?;
     if a.check {
@@ -224,6 +231,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         meter_samples: Some(task.meter_samples),
         seed: Some(task.seed),
         model: None,
+        settings: Settings::default(),
     };
     let work = Work::new(&task.scene, &overrides)?;
     if work.fingerprint != header.fingerprint {

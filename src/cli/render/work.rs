@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use super::settings::Settings;
 use super::state::{self, State};
 use super::{audits, files, pictures, sheets};
 use crate::cli::notes::Notes;
@@ -36,6 +37,7 @@ pub(super) struct Overrides {
     pub meter_samples: Option<u64>,
     pub seed: Option<u64>,
     pub model: Option<Model>,
+    pub settings: Settings,
 }
 
 /// A scene that is ready, with all that was read for it.
@@ -79,6 +81,7 @@ impl Work {
         let wrong = |e: description::Error| Failure::Message(format!("{path}:{e}"));
         let mut description = Description::parse(&scene.text).map_err(wrong)?;
         let render = &mut description.render;
+        overrides.settings.apply(render);
         render.solver = overrides.solver.unwrap_or(render.solver);
         render.samples = overrides.samples.unwrap_or(render.samples);
         render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);

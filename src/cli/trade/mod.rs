@@ -1,6 +1,7 @@
 //! `trade`: what each speed knob costs in accuracy, measured on the user's own input; one file per kind of input.
 
 mod output;
+mod render;
 mod spectrum;
 mod target;
 
@@ -13,10 +14,13 @@ use super::{Failure, Talk};
 pub(super) enum TradeCommand {
     /// Step, interpolation, rule, range and precision of the integration of a spectrum.
     Spectrum(spectrum::SpectrumArgs),
+    /// Samples, solver, path length, wavelengths and extent of the model of a scene's meters.
+    Render(render::RenderArgs),
 }
 
 pub(super) fn run(command: TradeCommand, talk: Talk) -> Result<(), Failure> {
     match command {
         TradeCommand::Spectrum(a) => spectrum::trade(&a, talk),
+        TradeCommand::Render(a) => render::trade(&a, talk),
     }
 }

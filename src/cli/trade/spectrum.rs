@@ -44,7 +44,7 @@ pub(super) fn trade(arguments: &SpectrumArgs, talk: Talk) -> Result<(), Failure>
         .map_err(|e| Failure::Message(format!("{path}: {e}")))?;
     if found.sweep.reference_errors[figure].is_none() {
         let defined = FIGURES.iter().zip(&found.sweep.reference_errors).filter(|(_, e)| e.is_some());
-        let others: Vec<&str> = defined.map(|(f, _)| f.key).collect();
+        let others: Vec<&str> = defined.map(|(f, _)| f.key.as_ref()).collect();
         let message =
             format!("{path}: has no {}; expected --figure with one of: {}", arguments.figure, others.join(", "));
         return Err(Failure::Message(message));

@@ -49,7 +49,7 @@ impl Target {
 /// The place of a figure by its key.
 pub(super) fn place(figures: &[Figure], key: &str) -> Result<usize, Failure> {
     figures.iter().position(|f| f.key == key).ok_or_else(|| {
-        let known: Vec<&str> = figures.iter().map(|f| f.key).collect();
-        Failure::Message(format!("--figure {key}: no such figure; expected one of {}", known.join(", ")))
+        let known: Vec<&str> = figures.iter().map(|f| f.key.as_ref()).collect();
+        Failure::Message(format!("`{key}`: no such figure; expected one of {}", known.join(", ")))
     })
 }

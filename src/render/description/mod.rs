@@ -58,7 +58,7 @@ pub struct Description {
 }
 
 /// How to render.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Render {
     /// Which light is followed.

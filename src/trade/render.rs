@@ -1,0 +1,203 @@
+//! The trade of a scene: how the readings of its meters change with samples, solver, path length, wavelengths and the extent of the
+//! model.
+//!
+//! | knob | values |
+//! |---|---|
+//! | `meter_samples` | the scene's own, and 4, 16, 64, 256 times fewer |
+//! | `solver` | path tracing; direct light with its mirror images (Whitted); direct light |
+//! | `max_edges` | paths of any length, or cut after 3 and 6 edges |
+//! | `wavelength_tolerance` | the scene's own, and 10 times as much and as little |
+//! | `model` | what the scene requires, or everything |
+//!
+//! All but the samples are turned one at a time, at a sixteenth of the scene's samples.
+//!
+//! **Reference**: everything modelled, by path tracing without limit, four times the scene's samples, with a seed of its own; its own error
+//! is 1.96 standard errors. **Errors** come from independent seeds: the root of the mean square distance from the reference, which holds noise
+//! and bias alike; its upper end is the limit of prediction |b̄| + t s √(1 + 1/n), below which another run stays in 95 % of all cases.
+
+use super::timing::interleaved;
+use super::{Estimate, Figure, Measure, Sweep, Trial};
+use crate::math::student::two_sided_95;
+use crate::render::build::{Built, Files, Kind, build};
+use crate::render::description::{Description, Error, Model, Render, Solver};
+use crate::render::estimate::REPLICATES;
+use crate::render::measure::{Board, Meter, Settings};
+use crate::render::reading;
+use crate::render::spool::Share;
+
+/// Parts of the scene's samples that are tried.
+const FEWER: [u64; 5] = [1, 4, 16, 64, 256];
+/// The part at which the other knobs are turned.
+const PART: u64 = 16;
+/// Times the scene's samples, for the reference.
+const MORE: u64 = 4;
+/// The seeds of the reference and of the trials are this far apart from the scene's.
+const SEEDS: u64 = 1 << 32;
+
+/// Why a scene could not be traded.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The scene cannot be built.
+    #[error(transparent)]
+    Scene(#[from] Error),
+    /// There is nothing to read.
+    #[error("1:1: the scene has no meter; expected a sensor that reads a number, as `illuminance` does")]
+    NoMeter,
+}
+
+/// A sweep, and the settings of each of its trials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderSweep {
+    /// The trials; a figure per meter or grid, by the sensor's name.
+    pub sweep: Sweep,
+    /// Their settings.
+    pub choices: Vec<Render>,
+}
+
+/// A scene under one choice of settings.
+struct Choice {
+    render: Render,
+    built: Built,
+    meters: Vec<(u64, Meter)>,
+    /// Each meter or grid: the place of the instrument, and of its first meter on the board.
+    read: Vec<(usize, usize)>,
+}
+
+impl Choice {
+    fn new(text: &str, description: &Description, files: &dyn Files, render: Render) -> Result<Self, Error> {
+        let mut description = description.clone();
+        description.render = render.clone();
+        let built = build(text, &description, files)?;
+        let (mut meters, mut read) = (Vec::new(), Vec::new());
+        for (n, instrument) in built.instruments.iter().enumerate() {
+            let own: &[Meter] = match &instrument.kind {
+                Kind::Meter(meter) => std::slice::from_ref(meter),
+                Kind::Grid { meters, .. } => meters,
+                Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => continue,
+            };
+            read.push((n, meters.len()));
+            meters.extend((0_u64..).zip(own).map(|(point, m)| (((n as u64) << 32) + point, m.clone())));
+        }
+        Ok(Self { render, built, meters, read })
+    }
+
+    /// Value and standard error of every meter and grid.
+    fn run(&self, seed: u64) -> Vec<(f64, f64)> {
+        let settings = Settings { seed, ..self.built.settings.clone() };
+        let mut board = Board::new(&self.built.scene, &settings, Share::WHOLE, self.meters.clone());
+        board.sample_until(self.render.meter_samples.div_ceil(REPLICATES as u64));
+        let bands = self.built.scene.bands();
+        let of = |(instrument, first): &(usize, usize)| {
+            let instrument = &self.built.instruments[*instrument];
+            reading::of_board(instrument, &board, *first, bands, &self.built.quantities, None)
+        };
+        self.read.iter().filter_map(of).map(|r| (r.figure.value, r.figure.standard_error)).collect()
+    }
+
+    fn words(&self) -> Vec<String> {
+        let r = &self.render;
+        let solver = match r.solver {
+            Solver::Path => "path",
+            Solver::Whitted => "whitted",
+            _ => "direct",
+        };
+        let model = if r.model == Model::Full { "full" } else { "minimal" };
+        vec![
+            r.meter_samples.to_string(),
+            solver.to_owned(),
+            r.max_edges.map_or_else(|| "any".to_owned(), |n| n.to_string()),
+            format!("{}", r.wavelength_tolerance),
+            model.to_owned(),
+        ]
+    }
+}
+
+/// Tries a scene with `repeats` seeds (at least 5) for each choice of settings.
+///
+/// # Errors
+/// [`RenderError`]: mistakes in the scene, or no meter in it.
+pub fn sweep(
+    text: &str,
+    description: &Description,
+    files: &dyn Files,
+    repeats: usize,
+) -> Result<RenderSweep, RenderError> {
+    let own = Render { solver: Solver::Path, max_edges: None, ..description.render.clone() };
+    let make = |render: Render| Choice::new(text, description, files, render);
+    let samples = MORE * own.meter_samples;
+    let best = make(Render { model: Model::Full, meter_samples: samples, ..own.clone() })?;
+    if best.read.is_empty() {
+        return Err(RenderError::NoMeter);
+    }
+    let reference = best.run(own.seed.wrapping_sub(SEEDS));
+    let figures = best.read.iter().map(|(n, _)| Figure {
+        key: best.built.instruments[*n].name.clone().into(),
+        unit: "",
+        measure: Measure::Relative,
+    });
+    let figures = figures.collect();
+    let choices = choices(&own).into_iter().map(make).collect::<Result<Vec<_>, _>>()?;
+    let mut values = vec![Vec::new(); choices.len()];
+    let timings = interleaved(choices.len(), repeats.max(5), |i| {
+        let seed = own.seed.wrapping_add(SEEDS * (values[i].len() as u64 + 1));
+        values[i].push(choices[i].run(seed));
+        Ok::<_, RenderError>(())
+    })?;
+    let mut trials = Vec::with_capacity(choices.len());
+    for ((choice, timing), values) in choices.iter().zip(timings).zip(&values) {
+        let errors = reference.iter().enumerate().map(|(f, (truth, _))| {
+            let off: Vec<f64> = values.iter().map(|v| v[f].0 / truth - 1.0).collect();
+            off.iter().all(|v| v.is_finite()).then(|| of_seeds(&off))
+        });
+        trials.push(Trial { settings: choice.words(), offered: true, timing, errors: errors.collect() });
+    }
+    let own_error = |(value, standard_error): &(f64, f64)| {
+        let error = 1.96 * standard_error / value.abs();
+        error.is_finite().then_some(error)
+    };
+    let sweep = Sweep {
+        reference: format!("everything modelled, paths of any length, {samples} samples of a meter, a seed of its own"),
+        knobs: vec!["meter_samples", "solver", "max_edges", "wavelength_tolerance", "model"],
+        figures,
+        reference_errors: reference.iter().map(own_error).collect(),
+        trials,
+    };
+    Ok(RenderSweep { sweep, choices: choices.into_iter().map(|c| c.render).collect() })
+}
+
+/// The settings that are tried.
+fn choices(own: &Render) -> Vec<Render> {
+    // What is sampled in rounds of replicates cannot have fewer samples than those.
+    let least = 4 * REPLICATES as u64;
+    let with = |samples: u64| Render { meter_samples: samples.max(least), ..own.clone() };
+    let mut out: Vec<Render> = FEWER.iter().map(|part| with(own.meter_samples / part)).collect();
+    let some = with(own.meter_samples / PART);
+    out.extend([Solver::Whitted, Solver::Direct].map(|solver| Render { solver, ..some.clone() }));
+    out.extend([3, 6].map(|n| Render { max_edges: Some(n), ..some.clone() }));
+    let tolerance = own.wavelength_tolerance;
+    out.extend([10.0, 0.1].map(|f| Render { wavelength_tolerance: f * tolerance, ..some.clone() }));
+    out.push(Render { model: if own.model == Model::Full { Model::Minimal } else { Model::Full }, ..some });
+    let mut unique: Vec<Render> = Vec::new();
+    for render in out {
+        if !unique.contains(&render) {
+            unique.push(render);
+        }
+    }
+    unique
+}
+
+/// The error of runs with different seeds, from their relative distances.
+fn of_seeds(off: &[f64]) -> Estimate {
+    let n = off.len() as f64;
+    let mean = off.iter().sum::<f64>() / n;
+    let variance = off.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+    let limit = two_sided_95(n - 1.0) * variance.sqrt();
+    let error = (off.iter().map(|v| v * v).sum::<f64>() / n).sqrt();
+    Estimate {
+        error,
+        // What is certain of the bias, and half of the scatter: a sum of n ≥ 6 squares falls below a quarter of its mean in under 5 %.
+        low: (mean.abs() - limit / n.sqrt()).max(0.5 * variance.sqrt()).min(error),
+        high: mean.abs() + limit * (1.0 + 1.0 / n).sqrt(),
+    }
+}

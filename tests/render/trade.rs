@@ -1,0 +1,146 @@
+//! What a trade of a scene promises: error curves with the slope of theory, and recommendations that hold with other seeds.
+
+use photopic::luminaire::Luminaire;
+use photopic::render::build::{Built, Files, Kind, PictureFile, build};
+use photopic::render::description::Description;
+use photopic::render::estimate::REPLICATES;
+use photopic::render::format::Object;
+use photopic::render::measure::{Board, Settings};
+use photopic::render::spool::Share;
+use photopic::spectrum::Spectrum;
+use predicates::str::contains;
+use serde_json::Value;
+
+use crate::cli::{json, photopic, scene};
+
+/// A grey hollow sphere with a small lamp in it: light of many bounces, and noise.
+const HOLLOW: &str = r#"
+[render]
+meter_samples = 16384
+[[material]]
+name = "grey"
+reflectance = 0.6
+[[shape]]
+name = "wall"
+material = "grey"
+sphere = { centre = [0, 0, 0], radius = "1 m" }
+[[shape]]
+name = "lamp"
+emission = { radiance = "1000 cd/m2" }
+rectangle = { corner = [-0.1, -0.1, 0.5], edges = [[0, 0.2, 0], [0.2, 0, 0]] }
+[[sensor]]
+name = "low"
+illuminance = { at = [0, 0, -0.5] }
+[[sensor]]
+name = "aside"
+illuminance = { at = [0.3, 0.1, 0], normal = [1, 0, 0] }
+"#;
+
+/// A scene without files.
+struct NoFiles;
+
+impl Files for NoFiles {
+    fn spectrum(&self, file: &str) -> Result<Spectrum, String> {
+        Err(file.to_owned())
+    }
+
+    fn luminaire(&self, file: &str) -> Result<Luminaire, String> {
+        Err(file.to_owned())
+    }
+
+    fn meshes(&self, file: &str) -> Result<Vec<Object>, String> {
+        Err(file.to_owned())
+    }
+
+    fn picture(&self, file: &str) -> Result<PictureFile, String> {
+        Err(file.to_owned())
+    }
+}
+
+/// The readings of a built scene's points with a seed.
+fn read(built: &Built, samples: u64, seed: u64) -> Vec<f64> {
+    let meters = (0..).zip(&built.instruments).map(|(n, i)| match &i.kind {
+        Kind::Meter(meter) => (n << 32, meter.clone()),
+        _ => panic!("a scene of points"),
+    });
+    let settings = Settings { seed, ..built.settings.clone() };
+    let meters: Vec<_> = meters.collect();
+    let count = meters.len();
+    let mut board = Board::new(&built.scene, &settings, Share::WHOLE, meters);
+    board.sample_until(samples.div_ceil(REPLICATES as u64));
+    (0..count).map(|m| board.estimate(m).figure(&built.quantities.luminous).value).collect()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn errors_fall_as_theory_says_and_what_is_recommended_holds_in_95_of_100_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let best = folder.path().join("best.toml");
+    let arguments = ["trade", "render", "--error", "1%", "--sensor", "aside", "--json", "--repeats", "10"];
+    let path = scene(&folder, HOLLOW);
+    let document = json(photopic().args(arguments).arg("--settings").arg(&best).arg(&path));
+    let result = &document["results"][0];
+    let trials = result["trials"].as_array().expect("trials");
+    let knob = |t: &Value, name: &str| t["settings"][name].as_str().expect("a word").to_owned();
+    let of_samples = |t: &&Value| {
+        let others =
+            [("solver", "path"), ("max_edges", "any"), ("wavelength_tolerance", "0.001"), ("model", "minimal")];
+        others.iter().all(|(name, value)| knob(t, name) == *value)
+    };
+    let points: Vec<(f64, f64)> = (trials.iter().filter(of_samples))
+        .map(|t| {
+            let samples: f64 = knob(t, "meter_samples").parse().expect("a number");
+            (samples.ln(), number(&t["errors"]["aside"]["error"]).ln())
+        })
+        .collect();
+    assert_eq!(points.len(), 5);
+    // N^(−1/2) at least. The root of a mean of 12 squares (two runs to warm up) scatters by 1/√24, so that a line through five of them, 4
+    // times the samples apart, has a slope with a standard error of 0.2/(ln 4 · √10) = 0.047; three of these are allowed.
+    let mean = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let slope = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>()
+        / points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum::<f64>();
+    assert!(slope < -0.5 + 3.0 * 0.047, "{slope}: {points:?}");
+    // Cut paths and direct light lose what bounces on: of ρ = 0.6 that is more than any noise, and it is told.
+    let effects = &result["effects"];
+    assert!(effects["solver"]["matters"] == true && effects["max_edges"]["matters"] == true, "{effects}");
+    // 200 runs of what was recommended with seeds of their own, against a long one.
+    let description = Description::parse(HOLLOW).expect("a scene");
+    let built = build(HOLLOW, &description, &NoFiles).expect("a scene");
+    let truth = read(&built, 1 << 19, 1 << 60)[1];
+    let chosen = &result["recommended"]["settings"];
+    let samples: u64 = chosen["meter_samples"].as_str().expect("a word").parse().expect("a number");
+    assert_eq!((chosen["solver"].as_str(), chosen["max_edges"].as_str()), (Some("path"), Some("any")));
+    let within = (0..200).filter(|seed| (read(&built, samples, 1000 + seed)[1] / truth - 1.0).abs() <= 0.01).count();
+    assert!(within >= 190, "{within} of 200 with {samples} samples");
+    // The file is taken by the renderer itself: as many samples of every meter.
+    let rendered = json(photopic().arg("render").arg(&path).arg("--json").arg("--settings").arg(&best));
+    assert_eq!(rendered["results"][0]["sensors"][1]["samples"], samples);
+}
+
+#[test]
+fn scenes_and_files_that_do_not_fit_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(&folder, HOLLOW);
+    let trade = || {
+        let mut command = photopic();
+        command.args(["trade", "render", "--repeats", "5"]).arg(&path);
+        command
+    };
+    trade().args(["--sensor", "high"]).assert().code(2).stderr(contains("no such sensor; expected one of low, aside"));
+    trade().args(["--error", "5K", "--meter-samples", "64"]).assert().code(2).stderr(contains("expected per cent"));
+    let wrong = folder.path().join("wrong.toml");
+    std::fs::write(&wrong, "[render]\nmeter_samples = 0\n").expect("written");
+    let mut render = photopic();
+    render.arg("render").arg(&path).arg("--settings").arg(&wrong);
+    render.assert().code(2).stderr(contains("wrong.toml:1:1: `meter_samples` is 0; expected at least 1"));
+    let no_meter = HOLLOW.split("[[sensor]]").next().expect("the shapes").to_owned()
+        + "[[sensor]]\nname = \"view\"\ncamera = { at = [0, 0, 0], look_at = [1, 0, 0], field_of_view = \"60 deg\", resolution = [2, 2] }\n";
+    let path = scene(&folder, &no_meter);
+    let mut command = photopic();
+    command.args(["trade", "render"]).arg(&path);
+    command.assert().code(2).stderr(contains("the scene has no meter; expected a sensor that reads a number"));
+}
