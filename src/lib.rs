@@ -18,6 +18,7 @@ pub mod photometry;
 pub mod plot;
 pub mod render;
 pub mod report;
+pub mod selfcheck;
 pub mod spectrum;
 pub mod tables;
 pub mod trade;

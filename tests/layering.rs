@@ -21,7 +21,7 @@ const ORDER: [&[&str]; 16] = [
     &["image"],
     &["luminaire", "brdf"],
     &["capture", "render"],
-    &["trade"],
+    &["selfcheck", "trade"],
     &["plot", "report"],
     &["cli"],
 ];

@@ -15,6 +15,7 @@ mod notes;
 mod output;
 mod places;
 mod render;
+mod selfcheck;
 mod tables;
 mod trade;
 mod writer;
@@ -66,6 +67,9 @@ enum Command {
     /// What speed costs in accuracy, measured on an input: settings timed and compared, and the fastest that meets an error.
     #[command(subcommand)]
     Trade(trade::TradeCommand),
+    /// Extremes and reference cases, run on this machine: from 1 K to 10⁹ K, from 1e-300 to 1e300 W, grazing angles, tiny and huge scenes;
+    /// exit code 1 where one is off.
+    Selfcheck(selfcheck::SelfcheckArgs),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -124,6 +128,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(arguments) => render::run(&arguments, cli.talk),
         Command::Merge(arguments) => render::merge(&arguments, cli.talk),
         Command::Trade(command) => trade::run(command, cli.talk),
+        Command::Selfcheck(arguments) => selfcheck::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

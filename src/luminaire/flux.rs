@@ -19,24 +19,42 @@ fn weights(angles_deg: &[f64], zero: impl Fn(f64, f64) -> f64, first: impl Fn(f6
     out
 }
 
-/// For k = sin γ.
-fn sine_weights(angles_deg: &[f64]) -> Vec<f64> {
-    // cos a − cos b without cancellation; ∫ (x − a) sin x = sin b − sin a − (b − a) cos b.
-    weights(
-        angles_deg,
-        |a, b| 2.0 * (0.5 * (a + b)).sin() * (0.5 * (b - a)).sin(),
-        |a, b| b.sin() - a.sin() - (b - a) * b.cos(),
-    )
+/// ∫ sin x dx from a to b, without cancellation.
+fn sine_zone(a: f64, b: f64) -> f64 {
+    2.0 * (0.5 * (a + b)).sin() * (0.5 * (b - a)).sin()
 }
 
-/// For k = cos x.
+/// ∫ cos x dx from a to b, without cancellation.
+fn cosine_zone(a: f64, b: f64) -> f64 {
+    2.0 * (0.5 * (a + b)).cos() * (0.5 * (b - a)).sin()
+}
+
+/// sin d − d cos d = ∫₀ᵈ t sin t dt, without cancellation.
+fn first_moment(d: f64) -> f64 {
+    /// Below, its series: Σ (−1)^(k+1) 2k/(2k+1)! d^(2k+1), to rounding with seven terms.
+    const SMALL: f64 = 0.5;
+    if d.abs() > SMALL {
+        return d.sin() - d * d.cos();
+    }
+    let q = d * d;
+    let terms = [3.0, 30.0, 840.0, 45_360.0, 3_991_680.0, 518_918_400.0, 93_405_312_000.0];
+    d * q * terms.iter().rev().fold(0.0, |sum, t| 1.0 / t - q * sum)
+}
+
+/// For k = sin γ. About the middle m of an interval of half-width d, ∫ (x − a) sin x = 2 d sin m sin d + 2 cos m (sin d − d cos d).
+fn sine_weights(angles_deg: &[f64]) -> Vec<f64> {
+    weights(angles_deg, sine_zone, |a, b| {
+        let (m, d) = (0.5 * (a + b), 0.5 * (b - a));
+        2.0 * (d * m.sin() * d.sin() + m.cos() * first_moment(d))
+    })
+}
+
+/// For k = cos x: ∫ (x − a) cos x = 2 d cos m sin d − 2 sin m (sin d − d cos d).
 fn cosine_weights(angles_deg: &[f64]) -> Vec<f64> {
-    // ∫ (x − a) cos x = cos b − cos a + (b − a) sin b.
-    weights(
-        angles_deg,
-        |a, b| 2.0 * (0.5 * (a + b)).cos() * (0.5 * (b - a)).sin(),
-        |a, b| b.cos() - a.cos() + (b - a) * b.sin(),
-    )
+    weights(angles_deg, cosine_zone, |a, b| {
+        let (m, d) = (0.5 * (a + b), 0.5 * (b - a));
+        2.0 * (d * m.cos() * d.sin() - m.sin() * first_moment(d))
+    })
 }
 
 /// For k = 1: trapezoids.
@@ -119,15 +137,13 @@ impl Distribution {
             }
             out
         };
-        let sine: fn(f64, f64) -> f64 = |a, b| a.cos() - b.cos();
-        let cosine: fn(f64, f64) -> f64 = |a, b| b.sin() - a.sin();
         let even: fn(f64, f64) -> f64 = |a, b| b - a;
         let (across, along) = match self.system() {
-            System::TypeC => (self.plane_weights(), solid(sine, self.vertical_deg())),
-            System::TypeA => (self.plane_weights(), solid(cosine, self.vertical_deg())),
+            System::TypeC => (self.plane_weights(), solid(sine_zone, self.vertical_deg())),
+            System::TypeA => (self.plane_weights(), solid(cosine_zone, self.vertical_deg())),
             System::TypeB => {
                 let copies = self.copies();
-                let across = solid(cosine, self.horizontal_deg()).into_iter().map(|w| w * copies).collect();
+                let across = solid(cosine_zone, self.horizontal_deg()).into_iter().map(|w| w * copies).collect();
                 (across, solid(even, self.vertical_deg()))
             }
         };

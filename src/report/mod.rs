@@ -15,5 +15,6 @@ pub mod image;
 pub mod lamp;
 pub mod render;
 pub mod render_audit;
+pub mod selfcheck;
 pub mod text;
 pub mod trade;
