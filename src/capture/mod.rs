@@ -4,6 +4,7 @@
 //! - [`response`]: the curve from code to exposure, from stacks of photographs of one scene at several times.
 //! - [`merge`]: such a stack into linear radiance with its standard error and a mask.
 //! - [`camera`]: intrinsics and distortion from views of a chessboard.
+//! - [`lights`]: where the lights were, from mirror balls and diffuse ones.
 //! - [`setup`]: camera, sphere and lights of a manifest; [`radiance`]: photographs in linear radiance; [`brdf`]: what a sphere reflects.
 //!
 //! # Conventions
@@ -15,6 +16,7 @@
 pub mod brdf;
 pub mod camera;
 pub mod error;
+pub mod lights;
 pub mod manifest;
 pub mod merge;
 pub mod photo;

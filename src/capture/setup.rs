@@ -91,6 +91,26 @@ pub struct Sphere {
     pub mask: Option<String>,
 }
 
+/// A ball in the pictures that tell the lights: a mirror, or diffuse.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ball {
+    /// The name that stacks use.
+    pub name: String,
+    /// A picture of the size of the photographs, brighter than half where the ball is.
+    #[serde(default)]
+    pub mask: Option<String>,
+    /// Its outline, pixels: column and row of the middle, and radius.
+    #[serde(default)]
+    pub circle_px: Option<[f64; 3]>,
+    /// Its centre, m: with a stated camera.
+    #[serde(default)]
+    pub centre_m: Option<[f64; 3]>,
+    /// Its radius, m: with a stated camera.
+    #[serde(default, deserialize_with = "maybe_positive")]
+    pub radius_m: Option<f64>,
+}
+
 /// A light: near with `position_m`, or distant with `direction`.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(try_from = "Stated")]

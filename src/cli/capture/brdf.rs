@@ -331,7 +331,7 @@ fn light_of(stack: &Stack) -> &str {
 }
 
 /// The picture of a stack, and its path.
-fn picture(photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
+pub(super) fn picture(photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
     let [Exposure { photo, time_s }] = stack.exposures.as_slice() else {
         return Err(Failure::Message(format!(
             "found {} exposures in {}; expected one linear picture: `photopic capture merge` makes it",
