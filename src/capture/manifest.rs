@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::setup::{Ball, Camera, Light, Radiance, Reference, Sphere};
+use super::setup::{Ball, Camera, Flat, Light, Radiance, Reference, Sphere};
 use crate::mistake;
 pub use crate::mistake::Mistake as Error;
 
@@ -40,6 +40,9 @@ pub struct Manifest {
     /// What the samples of linear photographs mean.
     #[serde(default)]
     pub radiance: Radiance,
+    /// The evenly lit field of the flat stacks: of known radiance, it makes the result absolute.
+    #[serde(default)]
+    pub flat: Option<Flat>,
     /// A diffuse sphere of known reflectance, photographed in the place of the object.
     #[serde(default)]
     pub reference: Option<Reference>,

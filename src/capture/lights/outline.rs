@@ -10,6 +10,8 @@ const SPOKES: u32 = 180;
 const REACH: f64 = 0.15;
 /// Least part of the spokes whose edges lie on one circle.
 const LEAST_FOUND: f64 = 0.4;
+/// Part of the greatest brightness along a spoke that the fall over an edge has.
+const PART: f64 = 0.2;
 /// Pixels from the circle beyond which a point is none of it.
 const OFF: f64 = 1.5;
 /// Least radius, pixels, that tells anything.
@@ -153,7 +155,8 @@ impl Outline {
             let falls: Option<Vec<f64>> = (1..steps).map(|i| Some(at(place(i - 1))? - at(place(i + 1))?)).collect();
             let Some(falls) = falls else { continue };
             let Some(most) = (0..falls.len()).max_by(|a, b| falls[*a].total_cmp(&falls[*b])) else { continue };
-            if most == 0 || most + 1 == falls.len() || falls[most] < 2.0 {
+            let peak = (0..=steps).filter_map(|i| at(place(i))).fold(0.0, f64::max);
+            if most == 0 || most + 1 == falls.len() || falls[most] < f64::max(2.0, PART * peak) {
                 continue;
             }
             // The top of the parabola through three falls.

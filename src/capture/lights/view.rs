@@ -6,6 +6,7 @@ use super::outline::Outline;
 use crate::capture::Error;
 use crate::capture::camera::Camera;
 use crate::capture::setup;
+use crate::geometry::direction::tangents;
 
 /// How pixels look at balls.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +40,7 @@ impl View {
     /// That of a stated camera, or parallel rays along −z with y upwards.
     ///
     /// # Errors
-    /// [`Error::Setup`] for an `up` along `forward`.
+    /// [`Error::Setup`] for an `up` along `forward`, or without intrinsics.
     pub fn new(camera: Option<&setup::Camera>) -> Result<Self, Error> {
         let Some(camera) = camera else {
             let axes = DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z);
@@ -49,7 +50,7 @@ impl View {
             found: format!("`up` {:?} along `forward` {:?}", camera.up, camera.forward),
             expected: "two directions across one another",
         })?;
-        Ok(Self { camera: Some(camera.lens()), axes, position: DVec3::from_array(camera.position_m) })
+        Ok(Self { camera: Some(camera.lens()?), axes, position: DVec3::from_array(camera.position_m) })
     }
 
     /// The same with focal lengths multiplied.
@@ -91,6 +92,23 @@ impl View {
     #[must_use]
     pub fn back(&self, point: DVec3) -> DVec3 {
         if self.camera.is_some() { (self.position - point).normalize() } else { -self.axes.z_axis }
+    }
+
+    /// The outline of a ball: where rays touch it, at (1 − r²/d²) of the way d to its centre and r √(1 − r²/d²) beside it.
+    #[must_use]
+    pub fn outline(&self, ball: &Ball) -> Option<Outline> {
+        let back = self.back(ball.centre);
+        let (t, b) = tangents(back);
+        let part2 = match self.camera {
+            Some(_) => ball.radius * ball.radius / (self.position - ball.centre).length_squared(),
+            None => 0.0,
+        };
+        let forward = if self.camera.is_some() { self.position - ball.centre } else { DVec3::ZERO };
+        let touch = |k: u32| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 90.0).sin_cos();
+            self.pixel(ball.centre + forward * part2 + ball.radius * (1.0 - part2).sqrt() * (cos * t + sin * b))
+        };
+        (part2 < 1.0).then(|| Outline::through((0..90).map(touch).collect())).flatten()
     }
 
     /// The ball with an outline: of parallel rays in pixels; of a camera by its radius.

@@ -7,6 +7,7 @@ use clap::Args;
 use glam::DVec3;
 use serde_json::json;
 
+use super::develop::Darkroom;
 use super::photos::{Form, Given, Photos, is_manifest};
 use crate::capture::lights::adjust::{Evidence, Observation, Start, adjust};
 use crate::capture::lights::highlight::{self, Highlight};
@@ -249,7 +250,7 @@ impl Run {
         let start = Start { ball, outline: outline.clone(), stated: stated.is_some() };
         let outline = match outline {
             Some(outline) => outline,
-            None => silhouette(&self.view, &ball).ok_or_else(|| {
+            None => self.view.outline(&ball).ok_or_else(|| {
                 message("found a ball out of the camera's sight; expected camera and centre in one frame")
             })?,
         };
@@ -367,7 +368,7 @@ impl Run {
         let seen = seen.ok_or_else(|| message("found no mirror ball; expected one for --environment"))?;
         let stack = photos.manifest.stack.iter().find(|s| s.name == seen.stack).cloned();
         let stack = stack.ok_or_else(|| message("found no stack of the mirror ball; expected one"))?;
-        let picture = super::brdf::picture(photos, &stack)?.0;
+        let picture = Darkroom::open(photos)?.picture(photos, &stack)?.0;
         let map =
             environment::equirectangular(&self.view, &balls[seen.ball], &picture, a.reflectance, a.width as usize);
         write_exr(photos, path, map)
@@ -452,17 +453,6 @@ fn brightest(photos: &mut Photos, all: &[Stack], stack: &Stack, photo: &Photo) -
         }
     }
     Outline::of_photo(&most, photo.width)
-}
-
-/// The silhouette of a ball before a camera.
-fn silhouette(view: &View, ball: &Ball) -> Option<Outline> {
-    let to_camera = view.back(ball.centre);
-    let (t, b) = crate::geometry::direction::tangents(to_camera);
-    let touch = |k: u32| {
-        let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 90.0).sin_cos();
-        view.pixel(ball.centre + ball.radius * (cos * t + sin * b))
-    };
-    Outline::through((0..90).map(touch).collect())
 }
 
 /// What a user should know.

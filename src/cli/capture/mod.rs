@@ -2,6 +2,7 @@
 
 mod brdf;
 mod calibrate;
+mod develop;
 mod lights;
 mod merge;
 mod photos;
