@@ -6,4 +6,5 @@ mod common;
 mod brdf;
 mod camera;
 mod lights;
+mod photographs;
 mod response;

@@ -28,6 +28,7 @@ use crate::cli::{Failure, Talk};
 use crate::finding::{Finding, Location};
 use crate::report::brdf_fit;
 use crate::report::capture_brdf::{self as report, Scale, StackSeen};
+use crate::report::capture_develop::{self, Developed};
 
 /// Models that are fitted where none are named.
 const MODELS: [&str; 5] = ["lambert", "phong", "blinn-phong", "ward", "lambert + ggx"];
@@ -139,6 +140,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let mask = a.mask.as_ref().map(|p| p.display().to_string()).or_else(|| stated.map(|m| photos.path(&m)));
     let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
     let places = a.measurements.is_some().then(Vec::new);
+    let camera = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
     let mut run = Run { scene, mask, room, places, seen: Vec::new(), all: None, strengths: Vec::new() };
     let scale = run.strengths(&mut photos)?;
     run.observe(&mut photos)?;
@@ -192,7 +194,16 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     settings["resolution"] = json!([binned.resolution.theta_h, binned.resolution.theta_d, binned.resolution.phi_d]);
     let shown = report::Answer { seen: &run.seen, scale: &scale, all: &all, binned: &binned, fits: answer.as_ref() };
     let text = if a.csv { report::csv(&shown) } else { report::text(&shown) };
-    photos.print(&settings, &[report::object(&shown)], &text, a.form.json, None)
+    let mut result = report::object(&shown);
+    let developed = Developed {
+        camera: camera.as_ref(),
+        calibration: run.room.calibration.as_ref(),
+        edge: aligned.as_ref(),
+        noise: run.room.noise.as_ref(),
+        vignetting: run.room.vignetting.as_ref(),
+    };
+    capture_develop::add(&mut result, &developed);
+    photos.print(&settings, &[result], &text, a.form.json, None)
 }
 
 /// Brings a camera that the board told into line with the edge of the sphere in the brightest of all pictures.

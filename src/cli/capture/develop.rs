@@ -77,10 +77,16 @@ impl Darkroom {
         let mut residuals: Option<Residuals> = None;
         photos.notes.stage(&format!("noise: {} stacks", stacks.len()));
         for stack in &stacks {
-            // Those that cannot be read are told when they are merged.
-            let decoded: Vec<_> = stack.exposures.iter().filter_map(|e| photos.photo(&e.photo).ok()).collect();
-            let coded: Vec<_> = decoded.iter().filter(|p| !p.is_linear()).collect();
-            let each: Vec<Residuals> = coded
+            // Those that cannot be read are told when they are merged; a stack is of one kind.
+            let mut decoded = Vec::new();
+            for exposure in &stack.exposures {
+                decoded.extend(photos.photo(&exposure.photo));
+                if decoded.last().is_some_and(crate::capture::Photo::is_linear) {
+                    decoded.clear();
+                    break;
+                }
+            }
+            let each: Vec<Residuals> = decoded
                 .par_iter()
                 .map(|p| {
                     let mut one = Residuals::default();
@@ -171,6 +177,11 @@ impl Darkroom {
 
     fn merged(&self, photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
         let (Some(respond), Some(noise)) = (&self.respond, &self.noise) else { return brdf::picture(photos, stack) };
+        if let [one] = stack.exposures.as_slice()
+            && photos.photo(&one.photo).is_ok_and(|p| p.is_linear())
+        {
+            return brdf::picture(photos, stack);
+        }
         photos.notes.stage(&format!("merging {}", stack.name));
         let mut exposures: Vec<&Exposure> = stack.exposures.iter().collect();
         let time = |e: &Exposure| e.time_s.unwrap_or(0.0);
