@@ -5,4 +5,6 @@ mod common;
 
 mod brdf;
 mod camera;
+mod lights;
+mod photographs;
 mod response;
