@@ -69,7 +69,7 @@ fn counts(counts: &Counts) -> Value {
     counts.named().into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect::<Map<String, Value>>().into()
 }
 
-fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
+pub(super) fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
     let mut all: Vec<(&'static str, usize)> = Counts::default().named().to_vec();
     for s in seen {
         all.iter_mut().zip(s.counts.named()).for_each(|(a, (_, n))| a.1 += n);

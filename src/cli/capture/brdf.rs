@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use super::brdf_report;
 use super::photos::{Form, Given, Photos};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Selection, Weighting};
@@ -22,8 +23,8 @@ use crate::cli::brdf::Bins;
 use crate::cli::output::write_file;
 use crate::cli::{Failure, Talk};
 use crate::finding::{Finding, Location};
-use crate::report::brdf_fit;
 use crate::report::capture_brdf::{self as report, Scale, StackSeen};
+use crate::report::{brdf_fit, capture_page};
 
 /// Models that are fitted where none are named.
 const MODELS: [&str; 5] = ["lambert", "phong", "blinn-phong", "ward", "lambert + ggx"];
@@ -42,6 +43,7 @@ reference sphere, the result is relative: it is scaled so that the median of f_r
 Examples:
   photopic capture brdf capture.toml
   photopic capture brdf capture.toml -o ball.binary -o ball.toml --json
+  photopic capture brdf capture.toml --report ball.html
   photopic capture brdf capture.toml --csv > bins.csv
   photopic capture brdf capture.toml -m 'lambert + beckmann' -m phong --max-theta-o 70")]
 pub(in crate::cli) struct BrdfArgs {
@@ -77,6 +79,10 @@ pub(in crate::cli) struct BrdfArgs {
     /// model as a material).
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
+    /// A report with pictures as one HTML file: coverage, lobes against data, photographs beside the model, energy and
+    /// reciprocity, what to photograph next.
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
 }
 
 /// What a file is, by its ending.
@@ -127,7 +133,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let stated = photos.manifest.sphere.as_ref().and_then(|s| s.mask.clone());
     let mask = a.mask.as_ref().map(|p| p.display().to_string()).or_else(|| stated.map(|m| photos.path(&m)));
     let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
-    let mut run = Run { scene, mask, seen: Vec::new(), all: None, strengths: Vec::new() };
+    let mut run = Run { scene, mask, seen: Vec::new(), all: None, strengths: Vec::new(), size: (0, 0) };
     let scale = run.strengths(&mut photos)?;
     run.observe(&mut photos)?;
     let Some(mut all) = run.all else {
@@ -175,8 +181,18 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     settings["every"] = a.every.into();
     settings["resolution"] = json!([binned.resolution.theta_h, binned.resolution.theta_d, binned.resolution.phi_d]);
     let shown = report::Answer { seen: &run.seen, scale: &scale, all: &all, binned: &binned, fits: answer.as_ref() };
+    let mut object = report::object(&shown);
+    if a.report.is_some() || a.form.json {
+        let mut more = brdf_report::more(&run.scene, run.size, &shown);
+        if let Some(path) = &a.report {
+            brdf_report::write(&mut photos, &run.scene, &shown, &mut more, path)?;
+        }
+        if let serde_json::Value::Object(object) = &mut object {
+            object.extend(capture_page::more(&more));
+        }
+    }
     let text = if a.csv { report::csv(&shown) } else { report::text(&shown) };
-    photos.print(&settings, &[report::object(&shown)], &text, a.form.json, None)
+    photos.print(&settings, &[object], &text, a.form.json, None)
 }
 
 /// Pixels of the object.
@@ -194,6 +210,8 @@ struct Run {
     all: Option<Observations>,
     /// Of each light of the manifest, per band or one for all.
     strengths: Vec<Vec<f64>>,
+    /// Columns and rows of the pictures.
+    size: (usize, usize),
 }
 
 impl Run {
@@ -308,6 +326,7 @@ impl Run {
         };
         let counts: Counts =
             self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut |s| all.push(s))?;
+        self.size = (picture.width, picture.height);
         if all.is_empty() {
             self.all = None;
         }
@@ -331,7 +350,7 @@ fn light_of(stack: &Stack) -> &str {
 }
 
 /// The picture of a stack, and its path.
-fn picture(photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
+pub(super) fn picture(photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
     let [Exposure { photo, time_s }] = stack.exposures.as_slice() else {
         return Err(Failure::Message(format!(
             "found {} exposures in {}; expected one linear picture: `photopic capture merge` makes it",
