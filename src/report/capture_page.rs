@@ -291,11 +291,19 @@ fn set_up(p: &Parts<'_>) -> Option<Section> {
         [s.light.clone(), place, s.strength.iter().map(|v| number(*v)).collect::<Vec<_>>().join(", ")]
     };
     let mut scale = match p.answer.scale {
-        Scale::Reference { reflectance, deviation_rms } => format!(
-            "The scale rests on a reference of reflectance {}, which differs from a diffuse one by {} rms.",
-            reflectance.iter().map(|r| number(*r)).collect::<Vec<_>>().join(", "),
-            percent(*deviation_rms)
-        ),
+        Scale::Reference { reflectance, factor_sd, light_sd, deviation_rms } => {
+            let list =
+                |all: &[f64], of: &dyn Fn(f64) -> String| all.iter().map(|v| of(*v)).collect::<Vec<_>>().join(", ");
+            format!(
+                "The scale rests on a reference of reflectance {}, known to {}, which differs from a diffuse one by {} rms. All values \
+                 have the first uncertainty in common; those under one light also that of its strength, {} or less. Neither is in the \
+                 standard errors.",
+                list(reflectance, &number),
+                list(factor_sd, &percent),
+                percent(*deviation_rms),
+                percent(*light_sd)
+            )
+        }
         Scale::Strengths { unit_w_per_m2_sr } => format!(
             "The scale rests on the strengths of the lights and a radiance of {} W/(m² sr) of a sample of 1 at 1 s.",
             number(*unit_w_per_m2_sr)

@@ -5,4 +5,5 @@ mod common;
 
 mod brdf;
 mod camera;
+mod cli;
 mod response;

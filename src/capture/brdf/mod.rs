@@ -30,7 +30,7 @@ pub use maps::Maps;
 pub use next::{Next, next_lights};
 pub use observe::{Counts, Limits, Scene, Seen, View};
 pub use reciprocity::{Reciprocity, reciprocity};
-pub use scale::strength_from;
+pub use scale::{Strength, reference_factor_sd, strength_from};
 
 use glam::DVec3;
 

@@ -13,7 +13,7 @@ use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::nodes;
 use crate::brdf::format::{csv, merl};
 use crate::brdf::table::{Resolution, Table};
-use crate::capture::brdf::{Binned, Counts, Limits, Observations, Scene, bin, strength_from};
+use crate::capture::brdf::{Binned, Counts, Limits, Observations, Scene, bin, reference_factor_sd, strength_from};
 use crate::capture::manifest::{Exposure, Shows, Stack};
 use crate::capture::photo::exif_time_s;
 use crate::capture::radiance::Radiance;
@@ -223,7 +223,7 @@ impl Run {
             photos.manifest.stack.iter().any(of)
         };
         if let Some(reference) = photos.manifest.reference.clone() {
-            let mut uneven: f64 = 0.0;
+            let (mut uneven, mut light_sd) = (0.0_f64, 0.0_f64);
             for light in &lights {
                 let of = |s: &&Stack| s.shows == Shows::Reference && light_of(s) == light.name;
                 let Some(stack) = photos.manifest.stack.iter().find(of).cloned() else {
@@ -243,13 +243,14 @@ impl Run {
                     .scene
                     .observe(&picture, light.place, &ones, self.mask.as_deref(), &mut |s| seen.push(s))
                     .map_err(|e| Failure::Message(format!("{name}: {e}")))?;
-                let Some((strength, spread)) = strength_from(&seen, &reference.reflectance) else {
+                let Some(strength) = strength_from(&seen, &reference) else {
                     let why =
                         if seen.is_empty() { counts.why() } else { "its reflectances are not as many as its bands" };
                     return Err(message(Error::Nothing { stack: stack.name, why: why.to_owned() }));
                 };
-                uneven = uneven.max(spread);
-                self.strengths.push(strength);
+                uneven = uneven.max(strength.deviation_rms);
+                light_sd = light_sd.max(strength.relative_errors.iter().copied().fold(0.0, f64::max));
+                self.strengths.push(strength.values);
             }
             if uneven > UNEVEN {
                 let words = format!("the reference differs from a diffuse one by {:.1} % rms", 100.0 * uneven);
@@ -257,7 +258,9 @@ impl Run {
                     .findings
                     .push(Finding::warning("K013", words).hint("the scale is off by as much, or the geometry is"));
             }
-            return Ok(Scale::Reference { reflectance: reference.reflectance, deviation_rms: uneven });
+            let factor_sd = reference_factor_sd(&reference);
+            let reflectance = reference.reflectance;
+            return Ok(Scale::Reference { reflectance, factor_sd, light_sd, deviation_rms: uneven });
         }
         let stated = lights.iter().filter(|l| l.strength.is_some()).count();
         if stated != 0 && stated != lights.len() {
