@@ -102,4 +102,20 @@ pub enum Error {
         /// What became of its pixels.
         why: String,
     },
+    /// A mirror ball without a lamp in it.
+    #[error("found no highlight of a lamp in {name}: {why}")]
+    Highlight {
+        /// Which photograph.
+        name: String,
+        /// What there is instead.
+        why: String,
+    },
+    /// A diffuse ball whose shading tells no light.
+    #[error("found no shading by one distant lamp in {name}: {why}")]
+    Shading {
+        /// Which photograph.
+        name: String,
+        /// What there is instead.
+        why: &'static str,
+    },
 }

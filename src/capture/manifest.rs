@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::setup::{Camera, Light, Radiance, Reference, Sphere};
+use super::setup::{Ball, Camera, Flat, Light, Radiance, Reference, Sphere};
 use crate::mistake;
 pub use crate::mistake::Mistake as Error;
 
@@ -31,12 +31,18 @@ pub struct Manifest {
     /// The sphere in front of it.
     #[serde(default)]
     pub sphere: Option<Sphere>,
+    /// Balls that tell the lights.
+    #[serde(default)]
+    pub ball: Vec<Ball>,
     /// The lights that stacks name.
     #[serde(default)]
     pub light: Vec<Light>,
     /// What the samples of linear photographs mean.
     #[serde(default)]
     pub radiance: Radiance,
+    /// The evenly lit field of the flat stacks: of known radiance, it makes the result absolute.
+    #[serde(default)]
+    pub flat: Option<Flat>,
     /// A diffuse sphere of known reflectance, photographed in the place of the object.
     #[serde(default)]
     pub reference: Option<Reference>,
@@ -81,6 +87,9 @@ pub struct Stack {
     /// The light that was on, by name.
     #[serde(default)]
     pub light: Option<String>,
+    /// The ball in it, by name; without it the only `[[ball]]`, else the sphere.
+    #[serde(default)]
+    pub ball: Option<String>,
     /// The photographs.
     pub exposures: Vec<Exposure>,
 }
@@ -89,7 +98,7 @@ impl Stack {
     /// A stack of an object.
     #[must_use]
     pub fn new(name: impl Into<String>, exposures: Vec<Exposure>) -> Self {
-        Self { name: name.into(), shows: Shows::Object, light: None, exposures }
+        Self { name: name.into(), shows: Shows::Object, light: None, ball: None, exposures }
     }
 }
 

@@ -4,10 +4,15 @@
 //! E = Σ w_j x_j / Σ w_j     x_j = g(z_j)/t_j     1/w_j = var(x_j) = (x_j · d ln g/dz · σ_z)² + (x_j σ_g)²
 //! ```
 //!
-//! σ_z is the error of a code, σ_g that of the response. The weight does not use the noisy x_j itself where a better one is there: it is
-//! the mean of the exposures so far, so that dark noise does not draw the result down. Exposures are added one after another: memory
-//! does not grow with their number: 16 bytes per sample.
+//! σ_z is the error of a code, σ_g that of the response. The weight does not use the noisy x_j itself where a better one is there, nor the
+//! errors of the noisy code: it is the mean of the exposures so far that says which code there should be and what its errors are, so that
+//! noise does not choose its own weight. The longest exposure comes first where that is to mean most. Exposures are added one after another:
+//! memory does not grow with their number: 16 bytes per sample.
 
+use rayon::prelude::*;
+
+use super::noise::Noise;
+use super::radiance::Radiance;
 use super::response::Curve;
 use super::{Error, Photo};
 use crate::image::{self, Channel, Description, Meaning, Region, Source};
@@ -46,7 +51,7 @@ pub struct Merge {
     width: usize,
     channels: usize,
     range: Range,
-    noise: f64,
+    noise: Noise,
     /// Σ w x and Σ w.
     sums: Vec<[f32; 2]>,
     /// Bounds from codes out of range: the radiance is above the first and below the second.
@@ -76,9 +81,13 @@ pub enum Respond {
 }
 
 impl Merge {
-    /// An empty sum for photographs like `first`; `noise` is the standard error of a code, of 0 to 255.
+    /// An empty sum for photographs like `first`.
+    ///
+    /// # Panics
+    /// Where the noise is that of fewer channels.
     #[must_use]
-    pub fn new(first: &Photo, range: Range, noise: f64) -> Self {
+    pub fn new(first: &Photo, range: Range, noise: Noise) -> Self {
+        assert!(noise.channels() >= first.channels, "noise for every channel");
         let samples = first.width * first.height * first.channels;
         Self {
             width: first.width,
@@ -107,25 +116,31 @@ impl Merge {
             return Err(Error::Time { name: name.to_owned(), time_s });
         }
         let tables: Vec<Table> = match respond {
-            Respond::Linear => vec![Table::Linear { time_s, noise: self.noise }; self.channels],
-            Respond::Curves(curves) => curves.iter().map(|c| Table::new(c, time_s, self.noise)).collect(),
+            Respond::Linear => vec![Table::Linear { time_s }; self.channels],
+            Respond::Curves(curves) => {
+                curves.iter().enumerate().map(|(c, curve)| Table::new(curve, time_s, c, &self.noise)).collect()
+            }
         };
         assert_eq!(tables.len(), self.channels, "a curve per channel");
-        for (i, (sum, bound)) in self.sums.iter_mut().zip(&mut self.bounds).enumerate() {
-            let (code, table) = (photo.code(i), &tables[i % self.channels]);
-            let (x, relative) = table.at(code);
+        let (range, noise, channels) = (self.range, &self.noise, self.channels);
+        let all = self.sums.par_iter_mut().zip(&mut self.bounds).enumerate().with_min_len(1 << 14);
+        all.for_each(|(i, (sum, bound))| {
+            let (code, table, channel) = (photo.code(i), &tables[i % channels], i % channels);
+            let x = table.radiance(code);
+            let best = (sum[1] > 0.0).then(|| f64::from(sum[0]) / f64::from(sum[1]));
+            // Whether it is too dark is asked of the code that should be there: noise that lifts a dark one must not select itself.
+            let expected = best.map_or(code, |best| table.code(best));
             #[expect(clippy::cast_possible_truncation, reason = "deliberate: pixels are f32")]
-            if code > self.range.saturated {
-                bound[0] = bound[0].max(table.at(self.range.saturated).0 as f32);
-            } else if code < self.range.dark {
-                bound[1] = bound[1].min(table.at(self.range.dark).0 as f32);
+            if code > range.saturated {
+                bound[0] = bound[0].max(table.radiance(range.saturated) as f32);
+            } else if expected < range.dark {
+                bound[1] = bound[1].min(table.radiance(range.dark) as f32);
             } else {
-                let best = if sum[1] > 0.0 { f64::from(sum[0]) / f64::from(sum[1]) } else { x };
-                let w = 1.0 / (best * relative).powi(2);
+                let w = 1.0 / (best.unwrap_or(x) * table.relative(expected, channel, noise)).powi(2);
                 sum[0] += (w * x) as f32;
                 sum[1] += w as f32;
             }
-        }
+        });
         Ok(())
     }
 
@@ -143,6 +158,21 @@ impl Merge {
             (most, f32::INFINITY, State::Dark)
         };
         Sample { radiance, standard_error, state }
+    }
+
+    /// The result as a picture of radiance, with its standard errors and states.
+    #[must_use]
+    pub fn radiance(&self) -> Radiance {
+        let samples = || (0..self.sums.len()).map(|i| self.sample(i));
+        Radiance {
+            width: self.width,
+            height: self.description.height,
+            channels: self.channels,
+            time_s: 1.0,
+            values: samples().map(|s| s.radiance).collect(),
+            errors: Some(samples().map(|s| s.standard_error).collect()),
+            states: Some(samples().map(|s| s.state).collect()),
+        }
     }
 
     /// Samples in each state: valid, saturated, dark, gap.
@@ -199,7 +229,7 @@ impl Source for Merge {
 /// pixel.
 #[derive(Clone)]
 enum Table {
-    Linear { time_s: f64, noise: f64 },
+    Linear { time_s: f64 },
     Curve(Vec<(f64, f64)>),
 }
 
@@ -209,25 +239,44 @@ const FINE: u32 = 16;
 const TOP: f64 = 255.0;
 
 impl Table {
-    fn new(curve: &Curve, time_s: f64, noise: f64) -> Self {
+    fn new(curve: &Curve, time_s: f64, channel: usize, noise: &Noise) -> Self {
         let entry = |k: u32| {
             let code = f64::from(k) / f64::from(FINE);
             // Where the curve is flat a code tells nothing: the least slope is that of a code in a thousand.
             let slope = curve.slope(code).max(1e-3);
-            let relative = (slope * noise).hypot(curve.standard_error(code));
+            let relative = (slope * noise.at(channel, code)).hypot(curve.standard_error(code));
             (curve.ln_exposure(code).exp() / time_s, relative)
         };
         Self::Curve((0..=255 * FINE).map(entry).collect())
     }
 
-    fn at(&self, code: f64) -> (f64, f64) {
+    fn entry(entries: &[(f64, f64)], code: f64) -> (f64, f64) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "codes are 0 to 255")]
+        let k = (code * f64::from(FINE)).round() as usize;
+        entries[k.min(entries.len() - 1)]
+    }
+
+    /// The radiance that a code stands for.
+    fn radiance(&self, code: f64) -> f64 {
         match self {
-            Self::Linear { time_s, noise } => (code / TOP / time_s, noise / code),
-            Self::Curve(entries) => {
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "codes are 0 to 255")]
-                let k = (code * f64::from(FINE)).round() as usize;
-                entries[k.min(entries.len() - 1)]
-            }
+            Self::Linear { time_s } => code / TOP / time_s,
+            Self::Curve(entries) => Self::entry(entries, code).0,
+        }
+    }
+
+    /// The relative standard error of the radiance at a code.
+    fn relative(&self, code: f64, channel: usize, noise: &Noise) -> f64 {
+        match self {
+            Self::Linear { .. } => noise.at(channel, code) / code,
+            Self::Curve(entries) => Self::entry(entries, code).1,
+        }
+    }
+
+    /// The code that a radiance should have, 0 to 255.
+    fn code(&self, radiance: f64) -> f64 {
+        match self {
+            Self::Linear { time_s } => (radiance * time_s * TOP).min(TOP),
+            Self::Curve(entries) => entries.partition_point(|e| e.0 < radiance) as f64 / f64::from(FINE),
         }
     }
 }

@@ -2,8 +2,10 @@
 //!
 //! - [`manifest`]: what was photographed, in TOML; [`photo`]: the codes of a photograph and when it says it was exposed.
 //! - [`response`]: the curve from code to exposure, from stacks of photographs of one scene at several times.
+//! - [`noise`]: the standard error of a code; [`flat`]: vignetting from an evenly lit field.
 //! - [`merge`]: such a stack into linear radiance with its standard error and a mask.
 //! - [`camera`]: intrinsics and distortion from views of a chessboard.
+//! - [`lights`]: where the lights were, from mirror balls and diffuse ones.
 //! - [`setup`]: camera, sphere and lights of a manifest; [`radiance`]: photographs in linear radiance; [`brdf`]: what a sphere reflects.
 //!
 //! # Conventions
@@ -15,8 +17,11 @@
 pub mod brdf;
 pub mod camera;
 pub mod error;
+pub mod flat;
+pub mod lights;
 pub mod manifest;
 pub mod merge;
+pub mod noise;
 pub mod photo;
 pub mod radiance;
 pub mod response;

@@ -45,6 +45,17 @@ impl Radiance {
         Ok(Self { width, height, channels, time_s, values, errors, states })
     }
 
+    /// Multiplies values and errors, a factor per channel.
+    pub fn scale(&mut self, factors: &[f64]) {
+        #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
+        let factors: Vec<f32> = factors.iter().map(|f| *f as f32).collect();
+        for plane in std::iter::once(&mut self.values).chain(self.errors.as_mut()) {
+            for pixel in plane.chunks_exact_mut(factors.len()) {
+                pixel.iter_mut().zip(&factors).for_each(|(v, f)| *v *= f);
+            }
+        }
+    }
+
     /// Size and channels in words.
     #[must_use]
     pub fn size(&self) -> String {

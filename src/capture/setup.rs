@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
 
+use super::Error;
 use super::camera::{self, Intrinsics};
 use crate::geometry::lens::Distortion;
 
@@ -15,18 +16,18 @@ use crate::geometry::lens::Distortion;
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
-    /// Focal length along x, pixels.
-    #[serde(deserialize_with = "positive")]
-    pub fx: f64,
+    /// Focal length along x, pixels. This and the next four: without them the views of the board tell them.
+    #[serde(default, deserialize_with = "maybe_positive")]
+    pub fx: Option<f64>,
     /// Focal length along y, pixels.
-    #[serde(deserialize_with = "positive")]
-    pub fy: f64,
+    #[serde(default, deserialize_with = "maybe_positive")]
+    pub fy: Option<f64>,
     /// Column of the principal point; the centre of the first pixel is 0.
-    #[serde(deserialize_with = "finite")]
-    pub cx: f64,
+    #[serde(default)]
+    pub cx: Option<f64>,
     /// Row of the principal point.
-    #[serde(deserialize_with = "finite")]
-    pub cy: f64,
+    #[serde(default)]
+    pub cy: Option<f64>,
     /// k1, k2, p1, p2, k3 of the lens, as `capture calibrate` gives them.
     #[serde(default)]
     pub distortion: [f64; 5],
@@ -55,11 +56,26 @@ fn up() -> [f64; 3] {
 
 impl Camera {
     /// Intrinsics and lens.
-    #[must_use]
-    pub fn lens(&self) -> camera::Camera {
+    ///
+    /// # Errors
+    /// [`Error::Setup`] where one of the intrinsics is not stated.
+    pub fn lens(&self) -> Result<camera::Camera, Error> {
+        let (Some(fx), Some(fy), Some(cx), Some(cy)) = (self.fx, self.fy, self.cx, self.cy) else {
+            return Err(Error::Setup {
+                found: "a [camera] without fx, fy, cx and cy".to_owned(),
+                expected: "all four, or a [board] whose views tell them",
+            });
+        };
         let [k1, k2, p1, p2, k3] = self.distortion;
-        let intrinsics = Intrinsics { fx: self.fx, fy: self.fy, cx: self.cx, cy: self.cy };
-        camera::Camera { intrinsics, distortion: Distortion { k1, k2, p1, p2, k3 } }
+        let intrinsics = Intrinsics { fx, fy, cx, cy };
+        Ok(camera::Camera { intrinsics, distortion: Distortion { k1, k2, p1, p2, k3 } })
+    }
+
+    /// States intrinsics and lens.
+    pub fn set_lens(&mut self, camera: &camera::Camera) {
+        let (i, d) = (&camera.intrinsics, &camera.distortion);
+        (self.fx, self.fy, self.cx, self.cy) = (Some(i.fx), Some(i.fy), Some(i.cx), Some(i.cy));
+        self.distortion = [d.k1, d.k2, d.p1, d.p2, d.k3];
     }
 
     /// Variance of the places that a sample is a mean over, along x or y, px²: 1/12 for the area of a pixel.
@@ -89,6 +105,26 @@ pub struct Sphere {
     /// A picture of the size of the photographs, brighter than half where its material is to be measured.
     #[serde(default)]
     pub mask: Option<String>,
+}
+
+/// A ball in the pictures that tell the lights: a mirror, or diffuse.
+#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ball {
+    /// The name that stacks use.
+    pub name: String,
+    /// A picture of the size of the photographs, brighter than half where the ball is.
+    #[serde(default)]
+    pub mask: Option<String>,
+    /// Its outline, pixels: column and row of the middle, and radius.
+    #[serde(default)]
+    pub circle_px: Option<[f64; 3]>,
+    /// Its centre, m: with a stated camera.
+    #[serde(default)]
+    pub centre_m: Option<[f64; 3]>,
+    /// Its radius, m: with a stated camera.
+    #[serde(default, deserialize_with = "maybe_positive")]
+    pub radius_m: Option<f64>,
 }
 
 /// A light: near with `position_m`, or distant with `direction`.
@@ -198,6 +234,34 @@ pub struct Radiance {
     pub saturated: Option<f64>,
 }
 
+/// The evenly lit field that stacks with shows = "flat" show.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(try_from = "StatedFlat")]
+pub struct Flat {
+    /// Its radiance at the middle of the picture, W/(m² sr), per band or one for all.
+    pub radiance: Vec<f64>,
+}
+
+/// The same in words.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct StatedFlat {
+    /// Its radiance at the middle of the picture, W/(m² sr), per band or one for all.
+    radiance_w_per_m2_sr: PerBand,
+}
+
+impl TryFrom<StatedFlat> for Flat {
+    type Error = String;
+
+    fn try_from(s: StatedFlat) -> Result<Self, String> {
+        let radiance = Vec::from(s.radiance_w_per_m2_sr);
+        if radiance.is_empty() || radiance.iter().any(|r| !(*r > 0.0 && r.is_finite())) {
+            return Err(format!("a radiance of {radiance:?}; expected numbers above 0"));
+        }
+        Ok(Self { radiance })
+    }
+}
+
 /// A diffuse sphere in the place of the object.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(try_from = "StatedReference")]
@@ -243,11 +307,6 @@ impl TryFrom<StatedReference> for Reference {
 
 fn checked<'de, D: Deserializer<'de>>(value: f64, sound: bool, expected: &str) -> Result<f64, D::Error> {
     if sound { Ok(value) } else { Err(D::Error::custom(format!("found {value}; expected {expected}"))) }
-}
-
-fn finite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
-    let value = f64::deserialize(from)?;
-    checked::<D>(value, value.is_finite(), "a finite number")
 }
 
 fn positive<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {

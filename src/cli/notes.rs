@@ -42,6 +42,13 @@ impl Notes {
         });
     }
 
+    /// Says what is being done, where somebody watches.
+    pub(super) fn stage(&self, words: &str) {
+        if !self.talk.quiet && io::stderr().is_terminal() {
+            self.say(&format!("… {words}"));
+        }
+    }
+
     /// Prints why something could not be done.
     pub(super) fn refuse(&mut self, message: &str) {
         self.failed = true;

@@ -9,6 +9,7 @@ use super::brdf_fit;
 use crate::brdf::table::Channel;
 use crate::capture::brdf::{Binned, Counts, Observations};
 use crate::capture::setup::Place;
+use crate::geometry::direction;
 use crate::units::significant;
 
 /// Median of f_r that a relative result is brought to, 1/sr.
@@ -128,6 +129,29 @@ pub fn object(a: &Answer<'_>) -> Value {
                 out.insert(key.to_owned(), value);
             }
         }
+    }
+    out
+}
+
+/// All measurements, a row each: stack and pixel by `places`, φ that of the camera less that of the light.
+#[must_use]
+pub fn measurements(seen: &[StackSeen], places: &[(usize, (usize, usize))], all: &Observations) -> String {
+    let bands = all.channels.len();
+    let mut out = String::from("stack,x,y,theta_i_deg,theta_o_deg,phi_deg");
+    // Writing to a string cannot fail.
+    for channel in &all.channels {
+        let _ = write!(out, ",f_{channel}_per_sr,standard_error_{channel}_per_sr");
+    }
+    out.push('\n');
+    for (n, ((stack, (x, y)), (i, o))) in places.iter().zip(&all.directions).enumerate() {
+        let phi = (direction::phi(*o) - direction::phi(*i)).to_degrees().rem_euclid(360.0);
+        let [theta_i, theta_o] = [i, o].map(|d| direction::theta(*d).to_degrees());
+        let _ = write!(out, "{},{x},{y},{theta_i},{theta_o},{phi}", seen[*stack].name);
+        let samples = n * bands..(n + 1) * bands;
+        for (value, error) in all.values[samples.clone()].iter().zip(&all.errors[samples]) {
+            let _ = write!(out, ",{value},{error}");
+        }
+        out.push('\n');
     }
     out
 }

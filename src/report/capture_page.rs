@@ -276,10 +276,12 @@ fn next(p: &Parts<'_>) -> Option<Section> {
 
 fn set_up(p: &Parts<'_>) -> Option<Section> {
     let c = p.camera;
-    let mut camera = vec![
-        ["fx, fy".to_owned(), format!("{}, {} px", number(c.fx), number(c.fy))],
-        ["cx, cy".to_owned(), format!("{}, {} px", number(c.cx), number(c.cy))],
-    ];
+    let mut camera = Vec::new();
+    if let Ok(lens) = c.lens() {
+        let i = lens.intrinsics;
+        camera.push(["fx, fy".to_owned(), format!("{}, {} px", number(i.fx), number(i.fy))]);
+        camera.push(["cx, cy".to_owned(), format!("{}, {} px", number(i.cx), number(i.cy))]);
+    }
     let lens = c.distortion.map(number).join(", ");
     camera.push(["k1, k2, p1, p2, k3".to_owned(), lens]);
     camera.push(["position".to_owned(), format!("({}) m", c.position_m.map(number).join(", "))]);

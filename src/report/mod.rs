@@ -8,6 +8,8 @@ pub mod brdf_compress;
 pub mod brdf_fit;
 pub mod capture;
 pub mod capture_brdf;
+pub mod capture_develop;
+pub mod capture_lights;
 pub mod capture_page;
 pub mod conversion;
 pub mod csv;

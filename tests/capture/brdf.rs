@@ -91,7 +91,7 @@ fn radiance(brdf: &dyn Brdf, lens: &Camera, light: Place, pixel: DVec2) -> [f64;
 /// A picture of it; a pixel is the mean over `grid`² places. `noise` is the relative standard deviation of its samples.
 fn photograph(material: &str, light: Place, grid: usize, noise: f64) -> Radiance {
     let brdf = prepared(material);
-    let lens = Manifest::parse(MANIFEST).expect("a manifest").camera.expect("a camera").lens();
+    let lens = Manifest::parse(MANIFEST).expect("a manifest").camera.expect("a camera").lens().expect("intrinsics");
     let mut picture = black();
     for at in 0..SIDE * SIDE {
         let mut sum = [0.0; 3];

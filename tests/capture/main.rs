@@ -6,4 +6,6 @@ mod common;
 mod brdf;
 mod camera;
 mod cli;
+mod lights;
+mod photographs;
 mod response;

@@ -3,6 +3,7 @@
 use std::fs;
 
 use photopic::capture::merge::{Merge, Range, Respond, State};
+use photopic::capture::noise::Noise;
 use photopic::capture::photo::Codes;
 use photopic::capture::response::{Curve, Exposures, LEVELS, Sampling, check_order, debevec, monotone, robertson};
 use photopic::capture::{Error, Photo};
@@ -253,7 +254,7 @@ fn merging_weighs_exposures_and_marks_what_is_out_of_range() {
         let values = radiances.iter().map(|e| (e * time_s).min(1.0)).collect();
         Photo { width: 3, height: 1, channels: 1, codes: Codes::Linear(values) }
     };
-    let mut merge = Merge::new(&photo(1.0), Range::default(), 1.0);
+    let mut merge = Merge::new(&photo(1.0), Range::default(), Noise::constant(1, 1.0));
     merge.add("long", 1.0, &photo(1.0), &Respond::Linear).expect("alike");
     merge.add("short", 0.1, &photo(0.1), &Respond::Linear).expect("alike");
     let samples = [0, 1, 2].map(|i| merge.sample(i));

@@ -1,6 +1,7 @@
 //! One picture of the sphere under one light.
 
 use glam::{DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 
 use crate::capture::camera::Camera;
 use crate::capture::merge::State;
@@ -37,6 +38,8 @@ pub struct Scene {
     radiance: setup::Radiance,
     /// Of the places that a sample is a mean over, px².
     pixel_variance: f64,
+    /// Standard error of the place of a pixel on the sphere, px: what calibration left of it. The gradient of the picture makes it one of σ.
+    pub placement_px: f64,
     /// Which measurements are used.
     pub limits: Limits,
 }
@@ -142,7 +145,17 @@ impl Scene {
         }
         let (radius, radiance) = (sphere.radius_m, manifest.radiance);
         let pixel_variance = camera.pixel_variance();
-        Ok(Self { camera: camera.lens(), position, axes, centre, radius, radiance, pixel_variance, limits })
+        Ok(Self {
+            camera: camera.lens()?,
+            position,
+            axes,
+            centre,
+            radius,
+            radiance,
+            pixel_variance,
+            placement_px: 0.0,
+            limits,
+        })
     }
 
     /// The point of the sphere that a pixel's centre sees, in units of the radius from its centre: the normal there.
@@ -160,13 +173,17 @@ impl Scene {
     /// What a pixel's centre sees of the sphere under a light; `None` where it does not see it.
     #[must_use]
     pub fn view(&self, pixel: DVec2, place: Place) -> Option<View> {
-        let normal = self.normal(pixel)?;
+        self.normal(pixel).map(|normal| self.view_at(normal, place))
+    }
+
+    /// The same for a point of the sphere that the camera sees.
+    fn view_at(&self, normal: DVec3, place: Place) -> View {
         let outgoing = (self.position - (self.centre + self.radius * normal)).normalize();
         let (incident, distance2) = self.light(place, normal);
         let (t, b) = tangents(normal);
         let local = |d: DVec3| DVec3::new(t.dot(d), b.dot(d), normal.dot(d));
         let irradiance = normal.dot(incident) / distance2;
-        Some(View { incident: local(incident), outgoing: local(outgoing), irradiance })
+        View { incident: local(incident), outgoing: local(outgoing), irradiance }
     }
 
     /// Whether light and camera are both within the angles that are used.
@@ -225,9 +242,10 @@ impl Scene {
             (self.limits.max_theta_i_deg.to_radians().cos(), self.limits.max_theta_o_deg.to_radians().cos());
         let (mut values, mut errors) = (vec![0.0; bands], vec![0.0; bands]);
         let mut counts = Counts::default();
+        let mut rows = Rows { scene: self, width: picture.width, height: picture.height, kept: Vec::new() };
         for y in (0..picture.height).step_by(self.limits.every.max(1)) {
             for x in (0..picture.width).step_by(self.limits.every.max(1)) {
-                let Some(view) = self.view(DVec2::new(x as f64, y as f64), place) else {
+                let Some(normal) = rows.normal(x, y) else {
                     counts.outside += 1;
                     continue;
                 };
@@ -236,6 +254,7 @@ impl Scene {
                     counts.masked += 1;
                     continue;
                 }
+                let view = self.view_at(normal, place);
                 if view.outgoing.z < least_o {
                     counts.silhouette += 1;
                     continue;
@@ -256,7 +275,7 @@ impl Scene {
                         continue;
                     }
                 }
-                let neighbours = self.neighbours(picture, place, (x, y));
+                let neighbours = self.neighbours(picture, place, &mut rows, (x, y));
                 for (band, i) in samples.enumerate() {
                     // Samples are radiance times exposure time.
                     let exposure = strength[band] * view.irradiance * picture.time_s;
@@ -284,13 +303,24 @@ impl Scene {
     }
 
     /// The four pixels beside one, where averages are corrected and all four are of use: lit, on the sphere, within the range.
-    fn neighbours(&self, picture: &Radiance, place: Place, (x, y): (usize, usize)) -> Option<[usize; 4]> {
-        if self.pixel_variance <= 0.0 || x == 0 || y == 0 || x + 1 >= picture.width || y + 1 >= picture.height {
+    fn neighbours(
+        &self,
+        picture: &Radiance,
+        place: Place,
+        rows: &mut Rows<'_>,
+        (x, y): (usize, usize),
+    ) -> Option<[usize; 4]> {
+        if self.pixel_variance.max(self.placement_px) <= 0.0
+            || x == 0
+            || y == 0
+            || x + 1 >= picture.width
+            || y + 1 >= picture.height
+        {
             return None;
         }
         let bands = picture.channels;
-        let of_use = |x: usize, y: usize| {
-            let normal = self.normal(DVec2::new(x as f64, y as f64))?;
+        let mut of_use = |x: usize, y: usize| {
+            let normal = rows.normal(x, y)?;
             let at = y * picture.width + x;
             let lit = self.light(place, normal).0.dot(normal) > 0.0;
             (lit && self.state(picture, at * bands..(at + 1) * bands) == State::Valid).then_some(at)
@@ -311,6 +341,9 @@ impl Scene {
             corrected -= part * f64::from(picture.values[n]);
             variance += (part * self.error(picture, n)).powi(2);
         }
+        let [left, right, above, below] = neighbours.map(|n| f64::from(picture.values[n]));
+        let gradient = DVec2::new(right - left, below - above) / 2.0;
+        variance += self.placement_px.powi(2) * gradient.length_squared();
         (corrected, variance.sqrt())
     }
 
@@ -342,3 +375,35 @@ impl Scene {
         }
     }
 }
+
+/// Normals of the rows about the one that is measured: rays through a lens are found once.
+struct Rows<'a> {
+    scene: &'a Scene,
+    width: usize,
+    height: usize,
+    kept: Vec<(usize, Vec<Option<DVec3>>)>,
+}
+
+impl Rows<'_> {
+    fn normal(&mut self, x: usize, y: usize) -> Option<DVec3> {
+        let at = self.kept.iter().position(|(row, _)| *row == y).unwrap_or_else(|| {
+            if self.kept.len() >= AT_ONCE {
+                // Rows are asked from the top downwards.
+                self.kept.retain(|(row, _)| row + 2 >= y);
+            }
+            let next = y..self.height.min(y + AT_ONCE);
+            let known: Vec<usize> = self.kept.iter().map(|(row, _)| *row).collect();
+            let row = |y: usize| {
+                let normals = (0..self.width).map(|x| self.scene.normal(DVec2::new(x as f64, y as f64)));
+                (y, normals.collect())
+            };
+            let new: Vec<_> = next.into_par_iter().filter(|y| !known.contains(y)).map(row).collect();
+            self.kept.extend(new);
+            self.kept.iter().position(|(row, _)| *row == y).unwrap_or(0)
+        });
+        self.kept[at].1[x]
+    }
+}
+
+/// Rows whose normals are found at once.
+const AT_ONCE: usize = 16;

@@ -24,6 +24,32 @@ const LEAST_VIEWS: usize = 3;
 /// # Errors
 /// [`Error::Views`] for fewer than three views, fewer than four corners in one, or views that do not tell the focal length.
 pub fn calibrate(views: &[View]) -> Result<Calibration, Error> {
+    with_lens(views, &[])
+}
+
+/// Lens models from the least to the greatest: the numbers of the camera that are held at 0.
+const LENSES: [&[usize]; 5] = [&[5, 6, 7, 8], &[6, 7, 8], &[6, 7], &[5, 8], &[8]];
+
+/// The camera with no more lens than the views tell: of k₁ alone, with k₂, with k₂ and k₃, with p₁ and p₂, with k₂ and these, and with all, the
+/// one of least N ln(Σr²/N) + k ln N (Schwarz 1978), N coordinates and k free numbers. Where tangential terms say nothing they trade with the
+/// principal point, whose standard error grows tenfold. Standard errors of numbers that are held are 0.
+///
+/// # Errors
+/// Those of [`calibrate`].
+pub fn calibrate_lean(views: &[View]) -> Result<Calibration, Error> {
+    let count = 2.0 * views.iter().map(|v| v.seen.len()).sum::<usize>() as f64;
+    let mut best: Option<(f64, Calibration)> = None;
+    for held in LENSES.into_iter().chain([[].as_slice()]) {
+        let found = with_lens(views, held)?;
+        let score = count * (found.rms_px * found.rms_px).ln() - held.len() as f64 * count.ln();
+        if best.as_ref().is_none_or(|(least, _)| score < *least) {
+            best = Some((score, found));
+        }
+    }
+    best.map(|(_, found)| found).ok_or(Error::Singular { what: "camera" })
+}
+
+fn with_lens(views: &[View], held: &[usize]) -> Result<Calibration, Error> {
     if views.len() < LEAST_VIEWS {
         let found = format!("the board in {} view(s)", views.len());
         return Err(Error::Views { found, expected: "three or more, better ten" });
@@ -35,10 +61,11 @@ pub fn calibrate(views: &[View]) -> Result<Calibration, Error> {
     let (intrinsics, poses) = start(views)?;
     let mut x = vec![intrinsics.fx, intrinsics.fy, intrinsics.cx, intrinsics.cy, 0.0, 0.0, 0.0, 0.0, 0.0];
     x.extend(poses.iter().flat_map(|p| p.rotation.to_array().into_iter().chain(p.translation.to_array())));
-    let free = vec![f64::INFINITY; x.len()];
-    let bound: Vec<f64> = free.iter().map(|f| -f).collect();
+    let mut high = vec![f64::INFINITY; x.len()];
+    held.iter().for_each(|k| high[*k] = 0.0);
+    let low: Vec<f64> = high.iter().map(|f| -f).collect();
     let limits = Limits { iterations: 200, step: 1e-12, gain: 1e-16 };
-    let found = minimise(&Bundle { views }, &x, &bound, &free, &limits);
+    let found = minimise(&Bundle { views }, &x, &low, &high, &limits);
     let found = found.ok_or(Error::Singular { what: "camera" })?;
     let (camera, poses) = unpack(&found.x);
     let rms = |view: &View, pose: &Pose| {
@@ -46,10 +73,11 @@ pub fn calibrate(views: &[View]) -> Result<Calibration, Error> {
         (view.board.iter().zip(&view.seen).map(distance).sum::<f64>() / view.seen.len() as f64).sqrt()
     };
     let corners: usize = views.iter().map(|v| v.seen.len()).sum();
-    let left = (2 * corners).saturating_sub(found.x.len()).max(1) as f64;
-    let all: Vec<usize> = (0..found.x.len()).collect();
-    let inverse = invert(&found.at.normal, &all).matrix;
-    let standard_errors = std::array::from_fn(|i| (inverse[(i, i)] * found.at.cost / left).sqrt());
+    let left = (2 * corners).saturating_sub(found.x.len() - held.len()).max(1) as f64;
+    let free: Vec<usize> = (0..found.x.len()).filter(|k| !held.contains(k)).collect();
+    let inverse = invert(&found.at.normal, &free).matrix;
+    let variance = |k: usize| free.iter().position(|f| *f == k).map_or(0.0, |i| inverse[(i, i)]);
+    let standard_errors = std::array::from_fn(|k| (variance(k) * found.at.cost / left).sqrt());
     Ok(Calibration {
         camera,
         standard_errors,

@@ -11,14 +11,16 @@
 
 mod adjust;
 mod board;
+mod edge;
 mod start;
 
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::geometry::lens::Distortion;
 
-pub use adjust::calibrate;
+pub use adjust::{calibrate, calibrate_lean};
 pub use board::find_corners;
+pub use edge::{Edge, fit_to_sphere};
 
 /// Focal lengths and principal point, pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,6 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::brdf_report;
+use super::develop::Darkroom;
 use super::photos::{Form, Given, Photos};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Selection, Weighting};
@@ -13,7 +14,12 @@ use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::nodes;
 use crate::brdf::format::{csv, merl};
 use crate::brdf::table::{Resolution, Table};
-use crate::capture::brdf::{Binned, Counts, Limits, Observations, Scene, bin, reference_factor_sd, strength_from};
+use crate::capture::brdf::{
+    Binned, Counts, Limits, Observations, Scene, Seen, bin, reference_factor_sd, strength_from,
+};
+use crate::capture::camera::{Edge, fit_to_sphere};
+use crate::capture::lights::outline::Outline;
+use crate::capture::lights::view::View;
 use crate::capture::manifest::{Exposure, Shows, Stack};
 use crate::capture::photo::exif_time_s;
 use crate::capture::radiance::Radiance;
@@ -24,6 +30,7 @@ use crate::cli::output::write_file;
 use crate::cli::{Failure, Talk};
 use crate::finding::{Finding, Location};
 use crate::report::capture_brdf::{self as report, Scale, StackSeen};
+use crate::report::capture_develop::{self, Developed};
 use crate::report::{brdf_fit, capture_page};
 
 /// Models that are fitted where none are named.
@@ -36,8 +43,9 @@ const UNEVEN: f64 = 0.02;
 /// The manifest, which pixels, which models, and the form of the answer.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-The manifest states camera, sphere and lights; the stacks are linear pictures, one each: EXR (as `capture merge` writes them, with
-their standard errors and masks) or 16-bit linear TIFF. Without the radiance of a sample and the strengths of the lights, and without a
+The manifest states camera, sphere and lights; the stacks are exposures, or linear pictures, one each: EXR (as `capture merge` writes them,
+with their standard errors and masks) or 16-bit linear TIFF. From exposures the noise of codes and, unless it is stated, the response are
+found first; from a [board] the camera, brought into line with the edge of the sphere; from a flat stack the vignetting. Without the radiance of a sample and the strengths of the lights, and without a
 reference sphere, the result is relative: it is scaled so that the median of f_r is 0.3/π, and says so.
 
 Examples:
@@ -75,6 +83,9 @@ pub(in crate::cli) struct BrdfArgs {
     /// The bins as one table, with their standard errors.
     #[arg(long, conflicts_with = "json")]
     csv: bool,
+    /// Write every measurement as CSV: stack, pixel, directions, f_r and its standard error per band.
+    #[arg(long, value_name = "FILE")]
+    measurements: Option<PathBuf>,
     /// Files to write: .binary (MERL, bins without measurement −1), .csv or .alta (points at the middles of bins), .toml (the best
     /// model as a material).
     #[arg(short, long, value_name = "FILE")]
@@ -129,11 +140,16 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     };
     let mut photos = Photos::open("capture brdf", &a.given, talk)?;
     let limits = Limits { max_theta_i_deg: a.max_theta_i, max_theta_o_deg: a.max_theta_o, every: a.every };
-    let scene = Scene::new(&photos.manifest, limits).map_err(message)?;
+    let mut room = Darkroom::open(&mut photos)?;
+    let aligned = align(&mut photos, &mut room)?;
+    let mut scene = Scene::new(&photos.manifest, limits).map_err(message)?;
+    scene.placement_px = aligned.map_or(0.0, |e| e.standard_error_px);
     let stated = photos.manifest.sphere.as_ref().and_then(|s| s.mask.clone());
     let mask = a.mask.as_ref().map(|p| p.display().to_string()).or_else(|| stated.map(|m| photos.path(&m)));
     let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
-    let mut run = Run { scene, mask, seen: Vec::new(), all: None, strengths: Vec::new(), size: (0, 0) };
+    let places = a.measurements.is_some().then(Vec::new);
+    let camera = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
+    let mut run = Run { scene, mask, room, places, seen: Vec::new(), all: None, strengths: Vec::new(), size: (0, 0) };
     let scale = run.strengths(&mut photos)?;
     run.observe(&mut photos)?;
     let Some(mut all) = run.all else {
@@ -142,6 +158,10 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     };
     warn(&mut photos, &run.seen);
     let scale = relative(&mut photos, scale, &mut all);
+    if let (Some(path), Some(places)) = (&a.measurements, &run.places) {
+        let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
+        write_file(path, report::measurements(&run.seen, places, &all).as_bytes(), &read)?;
+    }
     let binned = bin(&all, a.resolution.map_or(Resolution::MERL, |r| r.0));
     let samples = all.samples().map_err(message)?;
     let options = Options { places: Some(a.subsample), ..Options::default() };
@@ -185,14 +205,83 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     if a.report.is_some() || a.form.json {
         let mut more = brdf_report::more(&run.scene, run.size, &shown);
         if let Some(path) = &a.report {
-            brdf_report::write(&mut photos, &run.scene, &shown, &mut more, path)?;
+            brdf_report::write(&mut photos, &mut run.room, &run.scene, &shown, &mut more, path)?;
         }
         if let serde_json::Value::Object(object) = &mut object {
             object.extend(capture_page::more(&more));
         }
     }
     let text = if a.csv { report::csv(&shown) } else { report::text(&shown) };
+    let developed = Developed {
+        camera: camera.as_ref(),
+        calibration: run.room.calibration.as_ref(),
+        edge: aligned.as_ref(),
+        noise: run.room.noise.as_ref(),
+        vignetting: run.room.vignetting.as_ref(),
+    };
+    capture_develop::add(&mut object, &developed);
     photos.print(&settings, &[object], &text, a.form.json, None)
+}
+
+/// Brings a camera that the board told into line with the edge of the sphere in the brightest of all pictures.
+fn align(photos: &mut Photos, room: &mut Darkroom) -> Result<Option<Edge>, Failure> {
+    let Some(calibration) = room.calibration.clone() else { return Ok(None) };
+    let (Some(sphere), Some(camera)) = (photos.manifest.sphere.clone(), photos.manifest.camera.clone()) else {
+        return Ok(None);
+    };
+    let view = View::new(Some(&camera)).map_err(message)?;
+    let stacks: Vec<Stack> = photos.manifest.stack.iter().filter(|s| s.shows == Shows::Object).cloned().collect();
+    let mut brightest: Option<(usize, Vec<f32>)> = None;
+    for stack in &stacks {
+        // What cannot be read is told when it is measured.
+        let Ok((picture, _)) = room.picture(photos, stack) else { continue };
+        let luma = picture.values.chunks_exact(picture.channels).map(|p| p.iter().sum::<f32>());
+        let (_, most) = brightest.get_or_insert_with(|| (picture.width, vec![0.0; picture.width * picture.height]));
+        most.iter_mut().zip(luma).for_each(|(m, v)| *m = m.max(v));
+        room.keep(stack, picture);
+    }
+    let centre = glam::DVec3::from_array(sphere.centre_m);
+    let seen = brightest.and_then(|(width, most)| {
+        let top = most.iter().copied().fold(0.0, f32::max).max(f32::MIN_POSITIVE);
+        let levels: Vec<f32> = most.iter().map(|v| v / top * 1e5).collect();
+        let expected = view.outline(&crate::capture::lights::view::Ball { centre, radius: sphere.radius_m })?;
+        Outline::refined(&levels, width, &expected)
+    });
+    let errors = calibration.standard_errors;
+    let own = view.axes().transpose() * (centre - glam::DVec3::from_array(camera.position_m));
+    let edge = seen.and_then(|outline| {
+        let prior = (errors[2].max(errors[3]), errors[0].max(errors[1]) / calibration.camera.intrinsics.fx);
+        fit_to_sphere(calibration.camera, own, sphere.radius_m, &outline.points, prior)
+    });
+    match edge {
+        Some(edge) => {
+            let sigma = edge.moved_px.x / errors[2].max(1e-9);
+            let words = format!(
+                "the camera was brought into line with the edge of the sphere: principal point moved by {:.2}, {:.2} px, focal length by \
+                 {:.3} %; the edge is {:.2} px rms off",
+                edge.moved_px.x,
+                edge.moved_px.y,
+                100.0 * (edge.zoom - 1.0),
+                edge.rms_px
+            );
+            let far = sigma.abs().max((edge.moved_px.y / errors[3].max(1e-9)).abs()) > 4.0;
+            photos.findings.push(if far {
+                Finding::warning("K027", words)
+                    .hint("far more than the calibration allows: are camera and sphere where they are stated?")
+            } else {
+                Finding::info("K027", words)
+            });
+            if let Some(camera) = &mut photos.manifest.camera {
+                camera.set_lens(&edge.camera);
+            }
+            Ok(Some(edge))
+        }
+        None => {
+            let words = "no edge of the sphere was found: the camera is as the board told it";
+            photos.findings.push(Finding::warning("K027", words).hint("a dark background shows it"));
+            Ok(None)
+        }
+    }
 }
 
 /// Pixels of the object.
@@ -206,6 +295,9 @@ fn mask_of(photos: &mut Photos, path: &str) -> Result<Vec<bool>, Failure> {
 struct Run {
     scene: Scene,
     mask: Option<Vec<bool>>,
+    room: Darkroom,
+    /// Stack by number in `seen` and pixel of each measurement, where they are asked for.
+    places: Option<Vec<(usize, (usize, usize))>>,
     seen: Vec<StackSeen>,
     all: Option<Observations>,
     /// Of each light of the manifest, per band or one for all.
@@ -236,7 +328,7 @@ impl Run {
                     self.strengths.push(vec![1.0]);
                     continue;
                 };
-                let (picture, name) = picture(photos, &stack)?;
+                let (picture, name) = self.room.picture(photos, &stack)?;
                 let mut seen = Observations::new(picture.channels);
                 let ones = vec![1.0; picture.channels];
                 let counts = self
@@ -299,7 +391,7 @@ impl Run {
             };
             let place = lights[number].place;
             // A mistake in the set-up ends the run; a picture that is of no use does not.
-            let (picture, name) = match picture(photos, stack) {
+            let (picture, name) = match self.room.picture(photos, stack) {
                 Ok(found) => found,
                 Err(failure) if stacks.len() > 1 => {
                     photos.left_out(&stack.name, &failure);
@@ -327,8 +419,13 @@ impl Run {
             [one] => vec![*one; picture.channels],
             each => each.to_vec(),
         };
-        let counts: Counts =
-            self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut |s| all.push(s))?;
+        let mut visit = |s: &Seen<'_>| {
+            all.push(s);
+            if let Some(places) = &mut self.places {
+                places.push((self.seen.len(), s.pixel));
+            }
+        };
+        let counts: Counts = self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut visit)?;
         self.size = (picture.width, picture.height);
         if all.is_empty() {
             self.all = None;

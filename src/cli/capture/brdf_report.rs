@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use super::brdf::picture;
+use super::develop::Darkroom;
 use super::photos::Photos;
-use super::response::read_table;
 use crate::brdf::audit::{self, audit};
 use crate::brdf::fit::Fit;
 use crate::capture::brdf::{Scene, next_lights, reciprocity};
@@ -43,12 +42,13 @@ fn best<'a>(shown: &Answer<'a>) -> Option<&'a Fit> {
 /// Writes the report, and adds the residuals of the photographs to `more`.
 pub(super) fn write(
     photos: &mut Photos,
+    room: &mut Darkroom,
     scene: &Scene,
     shown: &Answer<'_>,
     more: &mut More,
     path: &Path,
 ) -> Result<(), Failure> {
-    let pictures = pictures(photos, scene, shown, more)?;
+    let pictures = pictures(photos, room, scene, shown, more)?;
     let Some(camera) = &photos.manifest.camera else { return Ok(()) };
     let parts = Parts {
         title: photos.manifest.title.as_deref().unwrap_or("BRDF of a photographed sphere"),
@@ -64,7 +64,13 @@ pub(super) fn write(
 }
 
 /// Draws the pictures, and adds the residuals of the photographs to `more`: they are read once more, one at a time.
-fn pictures(photos: &mut Photos, scene: &Scene, shown: &Answer<'_>, more: &mut More) -> Result<Pictures, Failure> {
+fn pictures(
+    photos: &mut Photos,
+    room: &mut Darkroom,
+    scene: &Scene,
+    shown: &Answer<'_>,
+    more: &mut More,
+) -> Result<Pictures, Failure> {
     let names: Vec<String> = shown.all.channels.iter().map(ToString::to_string).collect();
     let mut out = Pictures {
         coverage: vec![figure(
@@ -73,12 +79,10 @@ fn pictures(photos: &mut Photos, scene: &Scene, shown: &Answer<'_>, more: &mut M
         )?],
         ..Pictures::default()
     };
-    if let Some(file) = photos.manifest.response.file.clone() {
-        let path = photos.path(&file);
-        let curves = read_table(&path, &photos.bytes(&path)?)?;
+    if let Some(curves) = room.curves() {
         let channels: Vec<String> = (0..curves.len()).map(|c| channel_name(curves.len(), c).to_owned()).collect();
         let caption = "The response: exposure that belongs to a code.";
-        out.response.push(figure(response_panel(&curves, &channels).into(), caption)?);
+        out.response.push(figure(response_panel(curves, &channels).into(), caption)?);
     }
     let Some(fit) = best(shown) else { return Ok(out) };
     for (band, name) in names.iter().enumerate() {
@@ -92,7 +96,7 @@ fn pictures(photos: &mut Photos, scene: &Scene, shown: &Answer<'_>, more: &mut M
     out.energy.push(figure(sphere_panel(fit.brdf.as_ref(), &tint).into(), sphere)?);
     let factor = if let Scale::Relative { factor } = shown.scale { *factor } else { 1.0 };
     for seen in shown.seen.iter().filter(|s| s.counts.valid > 0) {
-        out.maps.extend(maps(photos, scene, seen, fit, factor, &tint, more)?);
+        out.maps.extend(maps(photos, room, (scene, fit, factor), seen, &tint, more)?);
     }
     Ok(out)
 }
@@ -100,17 +104,16 @@ fn pictures(photos: &mut Photos, scene: &Scene, shown: &Answer<'_>, more: &mut M
 /// Photograph, model and difference of a stack.
 fn maps(
     photos: &mut Photos,
-    scene: &Scene,
+    room: &mut Darkroom,
+    (scene, fit, factor): (&Scene, &Fit, f64),
     seen: &StackSeen,
-    fit: &Fit,
-    factor: f64,
     tint: &Tint,
     more: &mut More,
 ) -> Result<Vec<Figure>, Failure> {
     let Some(stack) = photos.manifest.stack.iter().find(|s| s.name == seen.name).cloned() else {
         return Ok(Vec::new());
     };
-    let (picture, _) = picture(photos, &stack)?;
+    let (picture, _) = room.picture(photos, &stack)?;
     // The values of a relative result were multiplied by the factor: the lights are weaker by it.
     let strength: Vec<f64> = seen.strength.iter().map(|s| s / factor).collect();
     let Some(maps) = scene.maps(&picture, seen.place, &strength, fit.brdf.as_ref(), SIDE) else {

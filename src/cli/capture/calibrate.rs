@@ -99,11 +99,16 @@ fn search(
         let message = "found no photographs of a board; expected `views` in [board] of the manifest, or photographs";
         return Err(Failure::Message(message.to_owned()));
     }
+    Ok(find_views(photos, &files, corners, square))
+}
+
+/// Finds the board in photographs; those without are left out.
+pub(super) fn find_views(photos: &mut Photos, files: &[String], corners: [usize; 2], square: f64) -> Vec<View> {
     let mut decoded = Vec::new();
     for file in files {
-        match photos.photo(&file) {
+        match photos.photo(file) {
             Ok(photo) => decoded.push((file, photo)),
-            Err(failure) => photos.left_out(&file, &failure),
+            Err(failure) => photos.left_out(file, &failure),
         }
     }
     let found: Vec<_> =
@@ -115,7 +120,7 @@ fn search(
             Err(error) => photos.left_out(file, &Failure::Message(error.to_string())),
         }
     }
-    Ok(views)
+    views
 }
 
 /// Reads a table of corners; views are named by what the column says.

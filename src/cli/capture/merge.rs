@@ -10,6 +10,7 @@ use super::photos::{Form, Given, Photos};
 use super::response::{Method, find, read_table};
 use crate::capture::manifest::Stack;
 use crate::capture::merge::{Merge, Range, Respond};
+use crate::capture::noise::Noise;
 use crate::cli::output::{Whole, overwrites, same_file};
 use crate::cli::{Failure, Talk};
 use crate::finding::{Finding, Location};
@@ -142,7 +143,7 @@ fn one(
             return Err(Failure::Message(message));
         }
         let range = Range { dark: a.dark, saturated: a.saturated };
-        let sum = merge.get_or_insert_with(|| Merge::new(&photo, range, a.noise));
+        let sum = merge.get_or_insert_with(|| Merge::new(&photo, range, Noise::constant(photo.channels, a.noise)));
         match sum.add(&exposure.photo, time_s, &photo, curves) {
             Ok(()) => used.push(exposure.photo.clone()),
             Err(error) => photos.left_out(&exposure.photo, &Failure::Message(error.to_string())),

@@ -3,6 +3,8 @@
 mod brdf;
 mod brdf_report;
 mod calibrate;
+mod develop;
+mod lights;
 mod merge;
 mod photos;
 mod response;
@@ -20,6 +22,8 @@ pub(super) enum CaptureCommand {
     Merge(merge::MergeArgs),
     /// Focal lengths, principal point and distortion from photographs of a chessboard.
     Calibrate(calibrate::CalibrateArgs),
+    /// Where the lights were, from a mirror ball or a diffuse one; the surroundings as a picture.
+    Lights(lights::LightsArgs),
     /// The BRDF of a photographed sphere, with its uncertainty: measured bins and fitted models.
     Brdf(brdf::BrdfArgs),
     /// Print the JSON schema of the manifest.
@@ -31,6 +35,7 @@ pub(super) fn run(command: CaptureCommand, talk: Talk) -> Result<(), Failure> {
         CaptureCommand::Response(a) => response::response(&a, talk),
         CaptureCommand::Merge(a) => merge::merge(&a, talk),
         CaptureCommand::Calibrate(a) => calibrate::calibrate(&a, talk),
+        CaptureCommand::Lights(a) => lights::lights(&a, talk),
         CaptureCommand::Brdf(a) => brdf::brdf(&a, talk),
         CaptureCommand::Schema => {
             use std::io::Write;
