@@ -268,6 +268,8 @@ impl TryFrom<StatedFlat> for Flat {
 pub struct Reference {
     /// Its reflectance, per band or one for all.
     pub reflectance: Vec<f64>,
+    /// Standard uncertainty of the reflectance, as many numbers; 0 where none was stated.
+    pub reflectance_sd: Vec<f64>,
 }
 
 /// The same in words.
@@ -276,6 +278,9 @@ pub struct Reference {
 struct StatedReference {
     /// Its reflectance, above 0 to 1, per band or one for all.
     reflectance: PerBand,
+    /// Standard uncertainty (k = 1) of the reflectance, as its certificate states it, per band or one for all.
+    #[serde(default)]
+    reflectance_sd: Option<PerBand>,
 }
 
 impl TryFrom<StatedReference> for Reference {
@@ -286,7 +291,17 @@ impl TryFrom<StatedReference> for Reference {
         if reflectance.is_empty() || reflectance.iter().any(|r| !(*r > 0.0 && *r <= 1.0)) {
             return Err(format!("a reflectance of {reflectance:?}; expected numbers above 0 to 1"));
         }
-        Ok(Self { reflectance })
+        let mut reflectance_sd = s.reflectance_sd.map_or_else(|| vec![0.0], Vec::from);
+        if reflectance_sd.len() == 1 {
+            reflectance_sd = vec![reflectance_sd[0]; reflectance.len()];
+        }
+        let sound = reflectance_sd.len() == reflectance.len() && reflectance_sd.iter().all(|u| (0.0..1.0).contains(u));
+        if !sound {
+            return Err(format!(
+                "a `reflectance_sd` of {reflectance_sd:?}; expected numbers from 0 to below 1, one or as many as reflectances"
+            ));
+        }
+        Ok(Self { reflectance, reflectance_sd })
     }
 }
 

@@ -177,7 +177,7 @@ impl Tint {
         Self(vec![[1.0 / bands.max(1) as f64; 3]; bands])
     }
 
-    fn pixel(&self, values: &[f64], exposure: f64) -> [u8; 3] {
+    pub(super) fn pixel(&self, values: &[f64], exposure: f64) -> [u8; 3] {
         let mut sum = [0.0; 3];
         for (v, weight) in values.iter().zip(&self.0) {
             sum.iter_mut().zip(weight).for_each(|(s, w)| *s += v * w);

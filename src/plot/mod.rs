@@ -32,6 +32,7 @@ mod axis;
 mod background;
 pub mod brdf;
 pub mod brdf_fit;
+pub mod capture;
 mod cartesian;
 mod chromaticity;
 mod clip;
@@ -209,6 +210,16 @@ pub enum Error {
 
 /// Smallest and largest width or height of a picture in pixels.
 pub const SIDES: (u32, u32) = (240, 8192);
+
+/// A file as a data URI (RFC 2397), to be put into a page.
+#[must_use]
+pub fn data_uri(file: &[u8], format: Format) -> String {
+    let kind = match format {
+        Format::Svg => "svg+xml",
+        Format::Png => "png",
+    };
+    format!("data:image/{kind};base64,{}", font::base64(file))
+}
 
 /// Draw one panel, or several as one picture: spectra above each other over the full width, the others side by side
 /// below, key figures at the head.

@@ -88,7 +88,7 @@ fn band(samples: &Samples, e: &Estimate) -> Option<Value> {
     })
 }
 
-fn label(samples: &Samples, fit: &Fit, e: &Estimate) -> String {
+pub(super) fn label(samples: &Samples, fit: &Fit, e: &Estimate) -> String {
     e.band.map_or_else(|| name(fit, e), |b| format!("{} [{}]", name(fit, e), samples.channels()[b]))
 }
 

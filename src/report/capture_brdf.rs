@@ -10,6 +10,7 @@ use crate::brdf::table::Channel;
 use crate::capture::brdf::{Binned, Counts, Observations};
 use crate::capture::setup::Place;
 use crate::geometry::direction;
+use crate::units::significant;
 
 /// Median of f_r that a relative result is brought to, 1/sr.
 pub const RELATIVE_MEDIAN: f64 = 0.3 * FRAC_1_PI;
@@ -36,6 +37,10 @@ pub enum Scale {
     Reference {
         /// Its reflectance.
         reflectance: Vec<f64>,
+        /// Relative standard uncertainty of the scale from that of the reflectance, which all values have in common.
+        factor_sd: Vec<f64>,
+        /// The largest relative standard error of a light's strength, which the values under that light have in common.
+        light_sd: f64,
         /// How far it was from diffuse, relative.
         deviation_rms: f64,
     },
@@ -70,7 +75,7 @@ fn counts(counts: &Counts) -> Value {
     counts.named().into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect::<Map<String, Value>>().into()
 }
 
-fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
+pub(super) fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
     let mut all: Vec<(&'static str, usize)> = Counts::default().named().to_vec();
     for s in seen {
         all.iter_mut().zip(s.counts.named()).for_each(|(a, (_, n))| a.1 += n);
@@ -91,9 +96,10 @@ pub fn object(a: &Answer<'_>) -> Value {
         out
     };
     let scale = match a.scale {
-        Scale::Reference { reflectance, deviation_rms } => {
-            json!({"kind": "reference", "absolute": true, "reflectance": reflectance, "deviation_rms": deviation_rms})
-        }
+        Scale::Reference { reflectance, factor_sd, light_sd, deviation_rms } => json!({
+            "kind": "reference", "absolute": true, "reflectance": reflectance, "reference_factor_sd": factor_sd,
+            "light_factor_sd": light_sd, "deviation_rms": deviation_rms,
+        }),
         Scale::Strengths { unit_w_per_m2_sr } => {
             json!({"kind": "strengths", "absolute": true, "unit_w_per_m2_sr": unit_w_per_m2_sr})
         }
@@ -196,7 +202,12 @@ pub fn text(a: &Answer<'_>) -> String {
         row(&mut out, "all", &total(a.seen));
     }
     let scale = match a.scale {
-        Scale::Reference { .. } => "absolute, from the reference".to_owned(),
+        Scale::Reference { factor_sd, .. } => {
+            let worst = factor_sd.iter().copied().fold(0.0, f64::max);
+            let known =
+                if worst > 0.0 { format!(", known to {} %", significant(100.0 * worst, 2)) } else { String::new() };
+            format!("absolute, from the reference{known}")
+        }
         Scale::Strengths { .. } => "absolute, from the stated strengths of the lights".to_owned(),
         Scale::Relative { .. } => "relative: median f_r set to 0.3/π; reflectances are ratios, not values".to_owned(),
     };

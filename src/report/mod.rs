@@ -1,4 +1,4 @@
-//! Results as JSON, CSV and text: the only writer of result JSON.
+//! Results as JSON, CSV, text and HTML: the only writer of result JSON.
 //!
 //! Keys and their order are those of `docs/json.md`; they end in their unit, a figure that does not apply is absent, one that
 //! could not be determined is `null` beside a finding that says why.
@@ -10,9 +10,11 @@ pub mod capture;
 pub mod capture_brdf;
 pub mod capture_develop;
 pub mod capture_lights;
+pub mod capture_page;
 pub mod conversion;
 pub mod csv;
 pub mod envelope;
+pub mod html;
 pub mod image;
 pub mod lamp;
 pub mod render;

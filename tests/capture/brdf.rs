@@ -9,10 +9,10 @@ use photopic::brdf::description::{Bands, Material};
 use photopic::brdf::fit::{Fit, Options, Uncertainty, fit};
 use photopic::brdf::table::Resolution;
 use photopic::capture::Manifest;
-use photopic::capture::brdf::{Limits, Observations, Scene, Seen, bin, strength_from};
+use photopic::capture::brdf::{Limits, Observations, Scene, Seen, bin, reference_factor_sd, strength_from};
 use photopic::capture::camera::Camera;
 use photopic::capture::radiance::Radiance;
-use photopic::capture::setup::Place;
+use photopic::capture::setup::{Place, Reference};
 use photopic::geometry::direction::mirror;
 use photopic::math::random::Stream;
 
@@ -220,12 +220,28 @@ fn a_diffuse_reference_tells_the_strength_of_a_light() {
     let mut reference = Observations::new(3);
     let picture = photograph("lambert(reflectance=[0.5,0.6,0.9])", light, 1, 0.0);
     scene(MANIFEST).observe(&picture, light, &[1.0; 3], None, &mut |s| reference.push(s)).expect("measured");
-    let (strength, spread) = strength_from(&reference, &[0.5, 0.6, 0.9]).expect("a strength");
-    assert!(spread < 1e-6, "{spread}");
-    for (found, truth) in strength.iter().zip(STRENGTH) {
+    let known = |reflectance: &[f64]| Reference { reflectance: reflectance.to_vec(), reflectance_sd: vec![0.01; 3] };
+    let strength = strength_from(&reference, &known(&[0.5, 0.6, 0.9])).expect("a strength");
+    assert!(strength.deviation_rms < 1e-6, "{strength:?}");
+    for (found, truth) in strength.values.iter().zip(STRENGTH) {
         assert!((found / truth - 1.0).abs() < 1e-7, "{found} {truth}");
     }
-    assert!(strength_from(&reference, &[0.5, 0.6]).is_none());
+    assert!(strength_from(&reference, &known(&[0.5, 0.6])).is_none());
+    // What the certificate leaves open is in all values alike: u(ρ)/ρ.
+    for (found, rho) in reference_factor_sd(&known(&[0.5, 0.6, 0.9])).into_iter().zip([0.5, 0.6, 0.9]) {
+        assert!((found - 0.01 / rho).abs() < 1e-15, "{found}");
+    }
+    // Noise of 1 % of n measurements is 1/√n of that in the strength, and the strength is off by it.
+    let mut noisy = Observations::new(3);
+    let picture = photograph("lambert(reflectance=[0.5,0.6,0.9])", light, 1, 0.01);
+    scene(MANIFEST).observe(&picture, light, &[1.0; 3], None, &mut |s| noisy.push(s)).expect("measured");
+    let strength = strength_from(&noisy, &known(&[0.5, 0.6, 0.9])).expect("a strength");
+    for ((found, error), truth) in strength.values.iter().zip(&strength.relative_errors).zip(STRENGTH) {
+        let expected = 0.01 / (noisy.len() as f64).sqrt();
+        // The scatter of n > 500 deviations is known to 1/√(2n), a thirtieth.
+        assert!((error / expected - 1.0).abs() < 0.1, "{error} {expected}");
+        assert!((found / truth - 1.0).abs() < 4.0 * error, "{found} ± {error}, expected {truth}");
+    }
 }
 
 #[test]

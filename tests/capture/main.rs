@@ -5,6 +5,7 @@ mod common;
 
 mod brdf;
 mod camera;
+mod cli;
 mod lights;
 mod photographs;
 mod response;

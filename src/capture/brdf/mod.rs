@@ -13,16 +13,24 @@
 //!
 //! - [`Scene::observe`]: the measurements of one picture, and how many pixels were masked for which reason.
 //! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere.
+//! - [`Scene::maps`]: a picture beside what a model says; [`reciprocity`]: of the measurements themselves; [`next_lights`]: what to photograph
+//!   next.
 //!
 //! Reference: W. Matusik et al., *A Data-Driven Reflectance Model*, ACM Trans. Graph. 22 (2003), for the principle.
 
 mod bins;
+mod maps;
+mod next;
 mod observe;
+mod reciprocity;
 mod scale;
 
 pub use bins::{Bin, Binned, bin};
-pub use observe::{Counts, Limits, Scene, Seen};
-pub use scale::strength_from;
+pub use maps::Maps;
+pub use next::{Next, next_lights};
+pub use observe::{Counts, Limits, Scene, Seen, View};
+pub use reciprocity::{Reciprocity, reciprocity};
+pub use scale::{Strength, reference_factor_sd, strength_from};
 
 use glam::DVec3;
 

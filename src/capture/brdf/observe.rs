@@ -59,6 +59,17 @@ pub struct Seen<'a> {
     pub errors: &'a [f64],
 }
 
+/// What a pixel sees of the sphere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// ω_i in the frame of the surface; below the horizon where the point is in the attached shadow.
+    pub incident: DVec3,
+    /// ω_o.
+    pub outgoing: DVec3,
+    /// cosθ_i/d², d = 1 for a distant light: irradiance over the strength of the light.
+    pub irradiance: f64,
+}
+
 /// What became of the pixels of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
@@ -159,6 +170,38 @@ impl Scene {
         (half_chord2 > 0.0 && along > 0.0).then(|| (nearest - half_chord2.sqrt() * ray).normalize())
     }
 
+    /// What a pixel's centre sees of the sphere under a light; `None` where it does not see it.
+    #[must_use]
+    pub fn view(&self, pixel: DVec2, place: Place) -> Option<View> {
+        self.normal(pixel).map(|normal| self.view_at(normal, place))
+    }
+
+    /// The same for a point of the sphere that the camera sees.
+    fn view_at(&self, normal: DVec3, place: Place) -> View {
+        let outgoing = (self.position - (self.centre + self.radius * normal)).normalize();
+        let (incident, distance2) = self.light(place, normal);
+        let (t, b) = tangents(normal);
+        let local = |d: DVec3| DVec3::new(t.dot(d), b.dot(d), normal.dot(d));
+        let irradiance = normal.dot(incident) / distance2;
+        View { incident: local(incident), outgoing: local(outgoing), irradiance }
+    }
+
+    /// Whether light and camera are both within the angles that are used.
+    #[must_use]
+    pub fn is_within_limits(&self, view: &View) -> bool {
+        let within = |d: DVec3, most_deg: f64| d.z >= most_deg.to_radians().cos();
+        within(view.incident, self.limits.max_theta_i_deg) && within(view.outgoing, self.limits.max_theta_o_deg)
+    }
+
+    /// From the middle of the sphere, a direction at an angle to that of the camera, to the right of it.
+    #[must_use]
+    pub fn beside_camera(&self, angle_rad: f64) -> DVec3 {
+        let to_camera = (self.position - self.centre).normalize();
+        let right =
+            (self.axes.x_axis - to_camera * self.axes.x_axis.dot(to_camera)).normalize_or(tangents(to_camera).0);
+        to_camera * angle_rad.cos() + right * angle_rad.sin()
+    }
+
     /// Visits the measurements of a picture, `mask` (a value per pixel, where given) being true where the object is.
     ///
     /// `strength` is the light's: radiant intensity of a near light, irradiance of a facing surface of a distant one, per band, so that the
@@ -211,15 +254,12 @@ impl Scene {
                     counts.masked += 1;
                     continue;
                 }
-                let point = self.centre + self.radius * normal;
-                let outgoing = (self.position - point).normalize();
-                if normal.dot(outgoing) < least_o {
+                let view = self.view_at(normal, place);
+                if view.outgoing.z < least_o {
                     counts.silhouette += 1;
                     continue;
                 }
-                let (incident, distance2) = self.light(place, normal);
-                let cos = normal.dot(incident);
-                if cos < least_i {
+                if view.incident.z < least_i {
                     counts.attached_shadow += 1;
                     continue;
                 }
@@ -238,14 +278,12 @@ impl Scene {
                 let neighbours = self.neighbours(picture, place, &mut rows, (x, y));
                 for (band, i) in samples.enumerate() {
                     // Samples are radiance times exposure time.
-                    let exposure = strength[band] * cos / distance2 * picture.time_s;
+                    let exposure = strength[band] * view.irradiance * picture.time_s;
                     let (value, error) = self.at_centre(picture, i, neighbours.map(|n| n.map(|n| n * bands + band)));
                     values[band] = value / exposure;
                     errors[band] = error / exposure;
                 }
-                let (t, b) = tangents(normal);
-                let local = |d: DVec3| DVec3::new(t.dot(d), b.dot(d), normal.dot(d));
-                let (incident, outgoing) = (local(incident), local(outgoing));
+                let View { incident, outgoing, .. } = view;
                 visit(&Seen { pixel: (x, y), incident, outgoing, values: &values, errors: &errors });
                 counts.valid += 1;
             }
@@ -310,7 +348,7 @@ impl Scene {
     }
 
     /// The worst of the states of a pixel's samples.
-    fn state(&self, picture: &Radiance, samples: std::ops::Range<usize>) -> State {
+    pub(super) fn state(&self, picture: &Radiance, samples: std::ops::Range<usize>) -> State {
         let mut worst = State::Valid;
         for i in samples {
             let value = f64::from(picture.values[i]);

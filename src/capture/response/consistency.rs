@@ -1,16 +1,19 @@
 //! Whether exposures agree with one another.
 
-use std::ops::RangeInclusive;
-
-use super::{Curve, Exposures, weight};
+use super::{Curve, Exposures, LEVELS};
 use crate::capture::Error;
 
 /// Share of the pixels of a pair of exposures from which on an order is believed: more than noise moves.
 const MOST_OUT_OF_ORDER: f64 = 0.5;
 /// Codes by which two exposures differ at least where they count: more than noise, also in the dark.
 const TELLING: u8 = 8;
-/// Codes that are compared: nearer to black, noise that cannot go below 0 draws the mean up; nearer to white, down.
-const COMPARED: RangeInclusive<usize> = 16..=240;
+/// Standard deviations of the noise that a code is away from black and white where it is compared: nearer, noise that cannot go beyond the
+/// end draws means inwards, by less than 1e-4 of its standard deviation from here on.
+const CLEAR: f64 = 3.5;
+/// Normal: standard deviations per median of the absolute value.
+const PER_MEDIAN: f64 = 1.482_602_218_505_602;
+/// Least change of ln g over a code: where a curve is flat a code tells nothing.
+const FLAT: f64 = 1e-3;
 /// Times closer than this factor are not ordered.
 const DISTINCT: f64 = 1.2;
 
@@ -40,39 +43,71 @@ pub struct Consistency {
     pub exposures: Vec<Share>,
 }
 
-/// Measures how far exposures disagree under curves, one per channel.
+/// A sample: its exposure, its weight by the noise of codes, ln(g(z)/t).
+type Sample = (usize, f64, f64);
+
+/// Calls `with` for each pixel and channel that two exposures show more than `margin` codes from black and white.
+fn each_pixel(stack: &Exposures, curves: &[Curve], margin: f64, with: &mut impl FnMut(&[Sample])) {
+    let mut seen: Vec<Sample> = Vec::new();
+    for pixel in 0..stack.pixels() {
+        for (channel, curve) in curves.iter().enumerate() {
+            seen.clear();
+            for (j, time_s) in stack.times_s.iter().enumerate() {
+                let z = stack.code(j, pixel, channel);
+                if (z as f64) > margin && ((LEVELS - 1 - z) as f64) > margin {
+                    seen.push((j, curve.slope(z as f64).max(FLAT).powi(-2), curve.ln_g[z] - time_s.ln()));
+                }
+            }
+            if seen.len() > 1 {
+                with(&seen);
+            }
+        }
+    }
+}
+
+/// Sum of weights, and mean.
+fn mean(samples: &[Sample]) -> (f64, f64) {
+    let sum: f64 = samples.iter().map(|(_, w, _)| w).sum();
+    (sum, samples.iter().map(|(_, w, e)| w * e).sum::<f64>() / sum)
+}
+
+/// Noise of a code: from the median of the residuals, which moved pixels do not disturb.
+fn noise(stacks: &[Exposures], curves: &[Curve]) -> f64 {
+    let mut residuals = Vec::new();
+    for stack in stacks {
+        each_pixel(stack, curves, 0.0, &mut |samples| {
+            let n = samples.len() as f64;
+            let (_, mean) = mean(samples);
+            residuals.extend(samples.iter().map(|(_, w, e)| (n / (n - 1.0) * w).sqrt() * (e - mean).abs()));
+        });
+    }
+    if residuals.is_empty() {
+        return 0.0;
+    }
+    let middle = residuals.len() / 2;
+    PER_MEDIAN * *residuals.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Measures how far exposures disagree under curves, one per channel. Samples weigh as the noise of codes has it: by (d ln g/dz)⁻².
 #[must_use]
 pub fn consistency(stacks: &[Exposures], curves: &[Curve]) -> Consistency {
+    let margin = CLEAR * noise(stacks, curves);
     let (mut square, mut total) = (0.0, 0.0);
     let mut exposures = Vec::new();
     for stack in stacks {
         let count = stack.times_s.len();
         let (mut offsets, mut squares) = (vec![0.0; count], vec![0.0; count]);
         let (mut weights, mut samples) = (vec![0.0; count], vec![0; count]);
-        for pixel in 0..stack.pixels() {
-            for (channel, curve) in curves.iter().enumerate() {
-                let each: Vec<(usize, f64, f64)> = (0..count)
-                    .map(|j| {
-                        let z = stack.code(j, pixel, channel);
-                        let w = if COMPARED.contains(&z) { weight(z as f64) * certainty(curve, z) } else { 0.0 };
-                        (j, w, curve.ln_g[z] - stack.times_s[j].ln())
-                    })
-                    .filter(|(_, w, _)| *w > 0.0)
-                    .collect();
-                let sum: f64 = each.iter().map(|(_, w, _)| w).sum();
-                if each.len() < 2 {
-                    continue;
-                }
-                let mean = each.iter().map(|(_, w, e)| w * e).sum::<f64>() / sum;
-                for (j, w, e) in each {
-                    let others = (mean * sum - w * e) / (sum - w);
-                    offsets[j] += w * (e - others);
-                    squares[j] += w * (e - mean).powi(2);
-                    weights[j] += w;
-                    samples[j] += 1;
-                }
+        each_pixel(stack, curves, margin, &mut |seen| {
+            let (sum, mean) = mean(seen);
+            for (j, w, e) in seen {
+                let others = (mean * sum - w * e) / (sum - w);
+                offsets[*j] += w * (e - others);
+                squares[*j] += w * (e - mean).powi(2);
+                weights[*j] += w;
+                samples[*j] += 1;
             }
-        }
+        });
         square += squares.iter().sum::<f64>();
         total += weights.iter().sum::<f64>();
         for j in 0..count {
@@ -88,13 +123,6 @@ pub fn consistency(stacks: &[Exposures], curves: &[Curve]) -> Consistency {
         }
     }
     Consistency { rms_ln: (square / f64::max(total, f64::MIN_POSITIVE)).sqrt(), exposures }
-}
-
-/// How much less a code says than that of a linear camera: where the curve is steep, as in the black of a scan, an error of a code is
-/// a large one of ln g.
-fn certainty(curve: &Curve, z: usize) -> f64 {
-    let steepness = (z as f64 + 1.0) * curve.slope(z as f64);
-    steepness.max(1.0).powi(-2)
 }
 
 /// Refuses stacks in which a longer exposure is darker than a shorter one, whatever the response: photographs or times swapped.

@@ -22,7 +22,8 @@ pub fn debevec(stacks: &[Exposures], lambda: f64) -> Result<Vec<Curve>, Error> {
     (0..channels).map(|c| solve(stacks, c, lambda)).collect()
 }
 
-fn solve(stacks: &[Exposures], channel: usize, lambda: f64) -> Result<Curve, Error> {
+/// The curve of one channel.
+pub(super) fn solve(stacks: &[Exposures], channel: usize, lambda: f64) -> Result<Curve, Error> {
     let mut normal = DMatrix::zeros(LEVELS, LEVELS);
     let mut right = DVector::zeros(LEVELS);
     for stack in stacks {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use super::brdf_report;
 use super::develop::Darkroom;
 use super::photos::{Form, Given, Photos};
 use crate::brdf::description::template::Template;
@@ -13,7 +14,9 @@ use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::nodes;
 use crate::brdf::format::{csv, merl};
 use crate::brdf::table::{Resolution, Table};
-use crate::capture::brdf::{Binned, Counts, Limits, Observations, Scene, Seen, bin, strength_from};
+use crate::capture::brdf::{
+    Binned, Counts, Limits, Observations, Scene, Seen, bin, reference_factor_sd, strength_from,
+};
 use crate::capture::camera::{Edge, fit_to_sphere};
 use crate::capture::lights::outline::Outline;
 use crate::capture::lights::view::View;
@@ -26,9 +29,9 @@ use crate::cli::brdf::Bins;
 use crate::cli::output::write_file;
 use crate::cli::{Failure, Talk};
 use crate::finding::{Finding, Location};
-use crate::report::brdf_fit;
 use crate::report::capture_brdf::{self as report, Scale, StackSeen};
 use crate::report::capture_develop::{self, Developed};
+use crate::report::{brdf_fit, capture_page};
 
 /// Models that are fitted where none are named.
 const MODELS: [&str; 5] = ["lambert", "phong", "blinn-phong", "ward", "lambert + ggx"];
@@ -48,6 +51,7 @@ reference sphere, the result is relative: it is scaled so that the median of f_r
 Examples:
   photopic capture brdf capture.toml
   photopic capture brdf capture.toml -o ball.binary -o ball.toml --json
+  photopic capture brdf capture.toml --report ball.html
   photopic capture brdf capture.toml --csv > bins.csv
   photopic capture brdf capture.toml -m 'lambert + beckmann' -m phong --max-theta-o 70")]
 pub(in crate::cli) struct BrdfArgs {
@@ -86,6 +90,10 @@ pub(in crate::cli) struct BrdfArgs {
     /// model as a material).
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
+    /// A report with pictures as one HTML file: coverage, lobes against data, photographs beside the model, energy and
+    /// reciprocity, what to photograph next.
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
 }
 
 /// What a file is, by its ending.
@@ -141,7 +149,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
     let places = a.measurements.is_some().then(Vec::new);
     let camera = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
-    let mut run = Run { scene, mask, room, places, seen: Vec::new(), all: None, strengths: Vec::new() };
+    let mut run = Run { scene, mask, room, places, seen: Vec::new(), all: None, strengths: Vec::new(), size: (0, 0) };
     let scale = run.strengths(&mut photos)?;
     run.observe(&mut photos)?;
     let Some(mut all) = run.all else {
@@ -193,8 +201,17 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     settings["every"] = a.every.into();
     settings["resolution"] = json!([binned.resolution.theta_h, binned.resolution.theta_d, binned.resolution.phi_d]);
     let shown = report::Answer { seen: &run.seen, scale: &scale, all: &all, binned: &binned, fits: answer.as_ref() };
+    let mut object = report::object(&shown);
+    if a.report.is_some() || a.form.json {
+        let mut more = brdf_report::more(&run.scene, run.size, &shown);
+        if let Some(path) = &a.report {
+            brdf_report::write(&mut photos, &mut run.room, &run.scene, &shown, &mut more, path)?;
+        }
+        if let serde_json::Value::Object(object) = &mut object {
+            object.extend(capture_page::more(&more));
+        }
+    }
     let text = if a.csv { report::csv(&shown) } else { report::text(&shown) };
-    let mut result = report::object(&shown);
     let developed = Developed {
         camera: camera.as_ref(),
         calibration: run.room.calibration.as_ref(),
@@ -202,8 +219,8 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         noise: run.room.noise.as_ref(),
         vignetting: run.room.vignetting.as_ref(),
     };
-    capture_develop::add(&mut result, &developed);
-    photos.print(&settings, &[result], &text, a.form.json, None)
+    capture_develop::add(&mut object, &developed);
+    photos.print(&settings, &[object], &text, a.form.json, None)
 }
 
 /// Brings a camera that the board told into line with the edge of the sphere in the brightest of all pictures.
@@ -285,6 +302,8 @@ struct Run {
     all: Option<Observations>,
     /// Of each light of the manifest, per band or one for all.
     strengths: Vec<Vec<f64>>,
+    /// Columns and rows of the pictures.
+    size: (usize, usize),
 }
 
 impl Run {
@@ -296,7 +315,7 @@ impl Run {
             photos.manifest.stack.iter().any(of)
         };
         if let Some(reference) = photos.manifest.reference.clone() {
-            let mut uneven: f64 = 0.0;
+            let (mut uneven, mut light_sd) = (0.0_f64, 0.0_f64);
             for light in &lights {
                 let of = |s: &&Stack| s.shows == Shows::Reference && light_of(s) == light.name;
                 let Some(stack) = photos.manifest.stack.iter().find(of).cloned() else {
@@ -316,13 +335,14 @@ impl Run {
                     .scene
                     .observe(&picture, light.place, &ones, self.mask.as_deref(), &mut |s| seen.push(s))
                     .map_err(|e| Failure::Message(format!("{name}: {e}")))?;
-                let Some((strength, spread)) = strength_from(&seen, &reference.reflectance) else {
+                let Some(strength) = strength_from(&seen, &reference) else {
                     let why =
                         if seen.is_empty() { counts.why() } else { "its reflectances are not as many as its bands" };
                     return Err(message(Error::Nothing { stack: stack.name, why: why.to_owned() }));
                 };
-                uneven = uneven.max(spread);
-                self.strengths.push(strength);
+                uneven = uneven.max(strength.deviation_rms);
+                light_sd = light_sd.max(strength.relative_errors.iter().copied().fold(0.0, f64::max));
+                self.strengths.push(strength.values);
             }
             if uneven > UNEVEN {
                 let words = format!("the reference differs from a diffuse one by {:.1} % rms", 100.0 * uneven);
@@ -330,7 +350,9 @@ impl Run {
                     .findings
                     .push(Finding::warning("K013", words).hint("the scale is off by as much, or the geometry is"));
             }
-            return Ok(Scale::Reference { reflectance: reference.reflectance, deviation_rms: uneven });
+            let factor_sd = reference_factor_sd(&reference);
+            let reflectance = reference.reflectance;
+            return Ok(Scale::Reference { reflectance, factor_sd, light_sd, deviation_rms: uneven });
         }
         let stated = lights.iter().filter(|l| l.strength.is_some()).count();
         if stated != 0 && stated != lights.len() {
@@ -404,6 +426,7 @@ impl Run {
             }
         };
         let counts: Counts = self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut visit)?;
+        self.size = (picture.width, picture.height);
         if all.is_empty() {
             self.all = None;
         }

@@ -16,6 +16,7 @@ use crate::capture::manifest::{Exposure, Shows, Stack};
 use crate::capture::merge::{Merge, Range, Respond};
 use crate::capture::noise::{Noise, Residuals};
 use crate::capture::radiance::Radiance;
+use crate::capture::response::Curve;
 use crate::cli::Failure;
 use crate::finding::{Finding, Location};
 
@@ -51,6 +52,11 @@ impl Darkroom {
         }
         room.find_vignetting(photos)?;
         Ok(room)
+    }
+
+    /// The response, where photographs were developed with one.
+    pub(super) fn curves(&self) -> Option<&[Curve]> {
+        if let Some(Respond::Curves(curves)) = &self.respond { Some(curves) } else { None }
     }
 
     fn calibrate(&mut self, photos: &mut Photos) -> Result<(), Failure> {

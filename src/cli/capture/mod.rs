@@ -1,6 +1,7 @@
 //! `capture`: photographs of known geometry; one file per verb.
 
 mod brdf;
+mod brdf_report;
 mod calibrate;
 mod develop;
 mod lights;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use nalgebra::{DMatrix, DVector};
 use serde_json::json;
 
 use super::photos::{Form, Given, Photos};
@@ -137,7 +138,7 @@ fn samples(photos: &mut Photos, sampling: Sampling) -> Result<Vec<Exposures>, Fa
     Ok(stacks)
 }
 
-/// Reads the table that `capture response --csv` writes.
+/// Reads the table that `capture response --csv` writes; of the covariances it has the diagonals.
 pub(super) fn read_table(path: &str, bytes: &[u8]) -> Result<Vec<Curve>, Failure> {
     let wrong = |line: usize, found: String| {
         let expected = "a table of `capture response --csv`, code and ln g per channel for codes 0 to 255";
@@ -149,17 +150,32 @@ pub(super) fn read_table(path: &str, bytes: &[u8]) -> Result<Vec<Curve>, Failure
     if !matches!(columns.len(), 1 | 3) {
         return Err(wrong(1, format!("{} columns `ln_g_…`", columns.len())));
     }
+    let errors: Vec<Option<usize>> = columns
+        .iter()
+        .map(|c| headers.iter().position(|h| headers[*c].strip_prefix("ln_g_") == h.strip_prefix("standard_error_")))
+        .collect();
     let mut curves = vec![Curve { ln_g: Vec::new(), covariance: None }; columns.len()];
+    let mut variances = vec![Vec::new(); columns.len()];
     for (n, row) in reader.records().enumerate() {
         let row = row.map_err(|e| wrong(n + 2, e.to_string()))?;
-        for (curve, column) in curves.iter_mut().zip(&columns) {
-            let cell = row.get(*column).unwrap_or_default();
+        let number = |column: usize| {
+            let cell = row.get(column).unwrap_or_default();
             let value = cell.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-            curve.ln_g.push(value.ok_or_else(|| wrong(n + 2, format!("`{cell}`")))?);
+            value.ok_or_else(|| wrong(n + 2, format!("`{cell}`")))
+        };
+        for (c, column) in columns.iter().enumerate() {
+            curves[c].ln_g.push(number(*column)?);
+            // Of methods without standard errors the cells are empty.
+            if let Some(column) = errors[c].filter(|e| !row.get(*e).unwrap_or_default().trim().is_empty()) {
+                variances[c].push(number(column)?.powi(2));
+            }
         }
     }
     if curves[0].ln_g.len() != response::LEVELS {
         return Err(wrong(1, format!("{} rows", curves[0].ln_g.len())));
+    }
+    for (curve, variances) in curves.iter_mut().zip(variances).filter(|(_, v)| v.len() == response::LEVELS) {
+        curve.covariance = Some(DMatrix::from_diagonal(&DVector::from_vec(variances)));
     }
     Ok(curves)
 }
