@@ -14,6 +14,7 @@ use super::patches::{Node, Patch};
 use crate::math::cubature::{Tolerance, rectangle};
 use crate::render::ray::Ray;
 use crate::render::scene::Scene;
+use crate::render::shape::chart::Spot;
 
 /// Radius over distance up to which the coarse and the fine rule do.
 const FAR: f64 = 0.07;
@@ -53,7 +54,7 @@ pub(super) fn exchange(scene: &Scene, a: &Patch, b: &Patch) -> Option<Exchange> 
             }
             let visible = visible(scene, a, side_a == 1, b, side_b == 1);
             if visible > 0.0 {
-                all[side_a][side_b] = visible * unoccluded(a, side_a == 1, b, side_b == 1);
+                all[side_a][side_b] = exchanged(scene, (a, side_a == 1), (b, side_b == 1), visible);
             }
         }
     }
@@ -72,8 +73,8 @@ fn kernel(a: &Node, back_a: bool, b: &Node, back_b: bool) -> f64 {
     if own > 0.0 && other > 0.0 { own / square * (other / square) } else { 0.0 }
 }
 
-/// A₁F₁₂ with nothing in between.
-fn unoccluded(a: &Patch, back_a: bool, b: &Patch, back_b: bool) -> f64 {
+/// A₁F₁₂ of the sides of two patches of which the part `visible` is not hidden.
+fn exchanged(scene: &Scene, (a, back_a): (&Patch, bool), (b, back_b): (&Patch, bool), visible: f64) -> f64 {
     // The closed form is that of a flat one; of two flat ones the smaller is summed over.
     let swap = if a.cell.is_flat() == b.cell.is_flat() { a.area > b.area } else { a.cell.is_flat() };
     let (from, back_from, to, back_to) = if swap { (b, back_b, a, back_a) } else { (a, back_a, b, back_b) };
@@ -81,9 +82,9 @@ fn unoccluded(a: &Patch, back_a: bool, b: &Patch, back_b: bool) -> f64 {
         let sum: f64 = (from.coarse.iter())
             .flat_map(|x| to.fine.iter().map(move |y| x.weight * y.weight * kernel(x, back_from, y, back_to)))
             .sum();
-        return from.area * to.area * sum / PI;
+        return visible * from.area * to.area * sum / PI;
     }
-    let seen = |spot: &crate::render::shape::chart::Spot| {
+    let seen = |spot: &Spot| {
         let height = to.cell.height(spot.position).unwrap_or(0.0);
         if (height < 0.0) == back_to {
             to.cell.projected_solid_angle(spot.position, flip(spot.normal, back_from)).unwrap_or(0.0) / PI
@@ -91,6 +92,14 @@ fn unoccluded(a: &Patch, back_a: bool, b: &Patch, back_b: bool) -> f64 {
             0.0
         }
     };
+    if visible < 1.0 {
+        // Every point has a view of its own: one may be covered by what stands beside the other.
+        let view = |x: &Node| {
+            let seen = seen(&x.spot);
+            if seen == 0.0 { 0.0 } else { x.weight * seen * view(scene, (from, back_from, x), (to, back_to)) }
+        };
+        return from.area * from.fine.iter().map(view).sum::<f64>();
+    }
     let gap = from.centre.distance(to.centre) - to.radius;
     let ratio = if gap > 0.0 { from.radius / gap } else { f64::INFINITY };
     let mean = if ratio < MIDDLE {
@@ -117,24 +126,42 @@ pub(super) fn is_clear(scene: &Scene, a: &Patch, back_a: bool, from: &Node, to: 
     !scene.surfaces().is_occluded(&Ray { origin, direction }, distance * (1.0 - SHORT), None)
 }
 
-/// The part of what two patches would exchange that nothing hides: of four rays, or of all sixteen between their nodes where those
-/// four do not agree.
-fn visible(scene: &Scene, a: &Patch, back_a: bool, b: &Patch, back_b: bool) -> f64 {
-    let part = |pairs: &mut dyn Iterator<Item = (usize, usize)>| {
-        let (mut all, mut clear) = (0.0, 0.0);
-        for (i, j) in pairs {
-            let (x, y) = (&a.coarse[i], &b.coarse[j]);
-            let weight = x.weight * y.weight * kernel(x, back_a, y, back_b);
-            all += weight;
-            if weight > 0.0 && is_clear(scene, a, back_a, x, y) {
-                clear += weight;
-            }
+/// The part of a patch, as a point of another sees it, that nothing hides: by four rays.
+fn view(scene: &Scene, (a, back_a, x): (&Patch, bool, &Node), (b, back_b): (&Patch, bool)) -> f64 {
+    part(b.coarse.iter().map(|y| (x, y)), scene, a, back_a, back_b).unwrap_or(0.0)
+}
+
+/// The part of what some pairs of points exchange that nothing hides; `None` where they exchange nothing.
+fn part<'a>(
+    pairs: impl Iterator<Item = (&'a Node, &'a Node)>,
+    scene: &Scene,
+    a: &Patch,
+    back_a: bool,
+    back_b: bool,
+) -> Option<f64> {
+    let (mut all, mut clear) = (0.0, 0.0);
+    for (x, y) in pairs {
+        let weight = x.weight * y.weight * kernel(x, back_a, y, back_b);
+        all += weight;
+        if weight > 0.0 && is_clear(scene, a, back_a, x, y) {
+            clear += weight;
         }
-        (all > 0.0).then_some(clear / all)
-    };
-    let first = part(&mut (0..4).map(|i| (i, (i + 1) % 4)));
-    match first {
-        Some(whole) if whole == 0.0 || whole == 1.0 => whole,
-        _ => part(&mut (0..16).map(|k| (k / 4, k % 4))).unwrap_or(0.0),
     }
+    (all > 0.0).then(|| clear / all)
+}
+
+/// The part of what two patches would exchange that nothing hides: of four rays where they are far apart and those agree, else of all
+/// sixteen between their nodes.
+fn visible(scene: &Scene, a: &Patch, back_a: bool, b: &Patch, back_b: bool) -> f64 {
+    let pairs = |of: &mut dyn Iterator<Item = (usize, usize)>| {
+        part(of.map(|(i, j)| (&a.coarse[i], &b.coarse[j])), scene, a, back_a, back_b)
+    };
+    if a.radius.max(b.radius) < FAR * a.centre.distance(b.centre) {
+        let few = pairs(&mut (0..4).map(|i| (i, (i + 1) % 4)));
+        if let Some(whole) = few.filter(|part| *part == 0.0 || *part == 1.0) {
+            return whole;
+        }
+    }
+    // Where no pair of nodes faces, both look at each other's edges alone, and nothing is known to hide them.
+    pairs(&mut (0..16).map(|k| (k / 4, k % 4))).unwrap_or(1.0)
 }

@@ -19,7 +19,7 @@
 //! The equations are solved by gathering, element after element, each with what was found before it (Gauss and Seidel). Links are made
 //! once, A_i F_ij = A_j F_ji by construction. What is done in parallel does not depend on the number of threads.
 //!
-//! What limits it: within a patch radiosity is the same everywhere, and visibility is a share found by at most sixteen rays. Both errors fall
+//! What limits it: within a patch radiosity is the same everywhere, and visibility is found by four rays from each of sixteen points. Both errors fall
 //! with the patches' edge; the same scene with edges twice as long tells how large they are.
 //!
 //! References: C. M. Goral, K. E. Torrance, D. P. Greenberg, B. Battaile, *Modeling the Interaction of Light Between Diffuse Surfaces*,
