@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::bands::Bands;
 use super::estimate::{Faults, stream};
 use super::integrator::path::PathTracer;
 use super::measure::Settings;
@@ -53,6 +54,25 @@ pub struct Film<'a, F> {
     shares: Option<Vec<u32>>,
 }
 
+/// What a camera's picture holds: the bands, then X, Y, Z.
+#[must_use]
+pub fn description(bands: &Bands, camera: &Camera) -> Description {
+    let unit = SpectralUnit {
+        factor: 1.0,
+        photons: false,
+        quantity: Quantity::Radiance,
+        per: Per::Wavelength,
+        text: "W/m2/sr/nm".to_owned(),
+    };
+    let mut channels: Vec<Channel> =
+        (bands.wavelengths_nm().iter()).map(|nm| Channel::band(format!("{nm} nm"), unit.text.clone(), *nm)).collect();
+    channels
+        .extend((["X", "Y", "Z"].into_iter().zip(0..)).map(|(n, i)| Channel::new(n, "cd/m2", Meaning::Tristimulus(i))));
+    let (width, height) = (camera.width() as usize, camera.height() as usize);
+    let content = Content::Light { quantity: Some(Quantity::Radiance), unit: Some(unit) };
+    Description { width, height, channels, content, rgb: None, attributes: Vec::new() }
+}
+
 impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     /// A picture of `samples` samples a pixel; `progress` is told of pixels as they are done.
     #[must_use]
@@ -65,22 +85,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         tristimulus: &'a [[f64; 3]],
         progress: F,
     ) -> Self {
-        let unit = SpectralUnit {
-            factor: 1.0,
-            photons: false,
-            quantity: Quantity::Radiance,
-            per: Per::Wavelength,
-            text: "W/m2/sr/nm".to_owned(),
-        };
-        let mut channels: Vec<Channel> = (scene.bands().wavelengths_nm().iter())
-            .map(|nm| Channel::band(format!("{nm} nm"), unit.text.clone(), *nm))
-            .collect();
-        channels.extend(
-            (["X", "Y", "Z"].into_iter().zip(0..)).map(|(n, i)| Channel::new(n, "cd/m2", Meaning::Tristimulus(i))),
-        );
-        let (width, height) = (camera.width() as usize, camera.height() as usize);
-        let content = Content::Light { quantity: Some(Quantity::Radiance), unit: Some(unit) };
-        let description = Description { width, height, channels, content, rgb: None, attributes: Vec::new() };
+        let description = description(scene.bands(), camera);
         Self {
             scene,
             camera,

@@ -26,6 +26,7 @@
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
+//! | [`radiosity`] | the light of diffuse scenes, without random numbers |
 //! | [`estimate`], [`measure`] | readings with their standard errors |
 //! | [`audit`] | where the energy goes, and what readings lose |
 //! | [`gonioreflectometer`] | the BRDF of a sample |
@@ -51,6 +52,7 @@ pub mod material;
 pub mod measure;
 pub mod mesh;
 pub mod placed;
+pub mod radiosity;
 pub mod ray;
 pub mod reading;
 pub mod sampler;

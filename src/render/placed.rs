@@ -6,6 +6,7 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::mesh::Mesh;
 use super::ray::{Crossing, Ray, SurfacePoint};
+use super::shape::chart::Chart;
 use super::shape::rounding::{cross, gamma};
 use super::shape::{Bounds, Shape, triangle};
 use crate::geometry::direction::tangents;
@@ -119,6 +120,16 @@ impl Shape for PlacedMesh {
 
     fn surface(&self, _ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.placement.surface(&self.mesh, crossing.face, crossing.uv)
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        let of = |face| {
+            let [a, b, c] = self.mesh.corners(face).map(|p| self.placement.to_world.transform_point3(p));
+            // A mirrored mesh has its corners the other way round.
+            let mirrored = self.placement.to_world.matrix3.determinant() < 0.0;
+            (face, Chart::Triangle(if mirrored { [a, c, b] } else { [a, b, c] }))
+        };
+        (0..self.mesh.triangles()).map(of).collect()
     }
 
     fn area(&self) -> f64 {

@@ -75,6 +75,8 @@ pub struct Reading {
     pub faults: Faults,
     /// The relative standard error that was asked for, and whether it was reached.
     pub target: Option<(f64, bool)>,
+    /// Of a reading without random numbers: how much it differs from that with patches twice as long, in its own unit.
+    pub discretisation: Option<f64>,
     /// The spectrum, where it was asked for.
     pub spectral: Option<Spectral>,
     /// The points of a grid.
@@ -133,12 +135,29 @@ pub fn of_board(
     quantities: &Quantities,
     target: Option<(f64, bool)>,
 ) -> Option<Reading> {
-    let meters: &[Meter] = match &instrument.kind {
-        Kind::Meter(meter) => std::slice::from_ref(meter),
-        Kind::Grid { meters, .. } => meters,
-        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => return None,
-    };
-    let estimates: Vec<Estimate> = (first..first + meters.len()).map(|m| board.estimate(m)).collect();
+    let estimates: Vec<Estimate> = (first..first + meters(instrument)?.len()).map(|m| board.estimate(m)).collect();
+    of_meters(instrument, &estimates, bands, quantities, target)
+}
+
+/// The meters of an instrument; `None` for what is no meter.
+fn meters(instrument: &Instrument) -> Option<&[Meter]> {
+    match &instrument.kind {
+        Kind::Meter(meter) => Some(std::slice::from_ref(meter)),
+        Kind::Grid { meters, .. } => Some(meters),
+        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => None,
+    }
+}
+
+/// The reading of a meter or of a grid by the estimates of its meters; `None` for what is no meter.
+#[must_use]
+pub fn of_meters(
+    instrument: &Instrument,
+    estimates: &[Estimate],
+    bands: &Bands,
+    quantities: &Quantities,
+    target: Option<(f64, bool)>,
+) -> Option<Reading> {
+    let meters = meters(instrument)?;
     let figures: Vec<Figure> = estimates.iter().map(|e| e.figure(&quantities.luminous)).collect();
     let radiant: Vec<Figure> = estimates.iter().map(|e| e.figure(&quantities.radiant)).collect();
     let mut faults = Faults::default();
@@ -159,6 +178,7 @@ pub fn of_board(
         samples: estimates.iter().map(Estimate::samples).sum(),
         faults,
         target,
+        discretisation: None,
         spectral: instrument.spectrum.then(|| spectral(&estimates[0], bands, quantities)),
         points,
         intensities: None,
@@ -185,6 +205,7 @@ pub fn of_goniophotometer(
         samples: flux.samples(),
         faults: flux.faults(),
         target: None,
+        discretisation: None,
         spectral: instrument.spectrum.then(|| spectral(flux, bands, quantities)),
         points: None,
         intensities: Some(measured),
@@ -212,6 +233,7 @@ pub fn of_gonioreflectometer(
         samples: measured.lobes.iter().map(|lobe| lobe.reflectance.samples()).sum(),
         faults,
         target: None,
+        discretisation: None,
         spectral: None,
         points: None,
         intensities: None,
@@ -233,6 +255,7 @@ pub fn of_picture(instrument: &Instrument, noise: &Noise, samples_per_pixel: u64
         samples: noise.pixels * samples_per_pixel,
         faults: noise.faults,
         target: None,
+        discretisation: None,
         spectral: None,
         points: None,
         intensities: None,

@@ -10,6 +10,7 @@ use crate::render::estimate::Figure;
 use crate::render::goniophotometer::Measured;
 use crate::render::gonioreflectometer;
 use crate::render::integrator::path::Follow;
+use crate::render::radiosity::Summary;
 use crate::render::reading::{Points, Reading, Spectral};
 use crate::units::significant;
 
@@ -19,6 +20,7 @@ pub fn model(built: &Built) -> Value {
     let bands = built.scene.bands();
     let limits = &built.settings.limits;
     let (solver, light) = match limits.follow {
+        _ if built.radiosity.is_some() => ("radiosity", "all light, between diffuse patches, without random numbers"),
         _ if !limits.shadows => ("preview", "direct light without shadows; no measurement"),
         Follow::All => ("path", "all light, direct and reflected"),
         Follow::Specular => ("whitted", "direct light and its reflections in mirrors and glass"),
@@ -94,6 +96,9 @@ pub fn sensor(reading: &Reading) -> Value {
     set("value", reading.figure.value.into());
     set("standard_error", reading.figure.standard_error.into());
     set("samples", reading.samples.into());
+    if let Some(difference) = reading.discretisation {
+        set("discretisation", difference.into());
+    }
     if let Some(radiant) = reading.radiant {
         let unit = match reading.unit {
             "lx" => "W/m2",
@@ -234,18 +239,29 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
     let width = readings.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
     // Writing to a string cannot fail.
     for r in readings {
-        let percent = if r.figure.value == 0.0 { 0.0 } else { 100.0 * r.figure.standard_error / r.figure.value.abs() };
-        let _ = writeln!(
-            out,
-            "{:width$}  {} ± {} {} ({}, {} %, {} samples)",
-            r.name,
-            significant(r.figure.value, 5),
-            significant(r.figure.standard_error, 2),
-            r.unit.replace("m2", "m²"),
-            r.quantity,
-            significant(percent, 2),
-            r.samples
-        );
+        if let Some(difference) = r.discretisation {
+            let (value, unit) = (significant(r.figure.value, 5), r.unit.replace("m2", "m²"));
+            let (difference, what) = (significant(difference, 2), r.quantity);
+            let _ = writeln!(
+                out,
+                "{:width$}  {value} {unit} ({what}; {difference} {unit} from that with patches twice as long)",
+                r.name
+            );
+        } else {
+            let percent =
+                if r.figure.value == 0.0 { 0.0 } else { 100.0 * r.figure.standard_error / r.figure.value.abs() };
+            let _ = writeln!(
+                out,
+                "{:width$}  {} ± {} {} ({}, {} %, {} samples)",
+                r.name,
+                significant(r.figure.value, 5),
+                significant(r.figure.standard_error, 2),
+                r.unit.replace("m2", "m²"),
+                r.quantity,
+                significant(percent, 2),
+                r.samples
+            );
+        }
         if let Some(p) = &r.points {
             let values = || p.figures.iter().map(|f| f.value);
             let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
@@ -304,6 +320,41 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
         .map_or_else(String::new, |e| format!(" (error of their sum up to {})", significant(e, 2)));
     let _ = writeln!(out, "\n{bands} wavelengths on every path{error}");
     out
+}
+
+/// What a solution by radiosity was like: `radiosity` of the result.
+#[must_use]
+pub fn radiosity(s: &Summary) -> Value {
+    json!({
+        "patches": s.patches,
+        "patch_edge_m": s.edge_m,
+        "links": s.links,
+        "sweeps": s.sweeps,
+        "residual": s.residual,
+        "greatest_sum_of_form_factors": s.greatest_sum,
+        "emitted_w": s.emitted_w,
+        "absorbed_w": s.absorbed_w,
+        "escaped_w": s.escaped_w,
+        "balance_w": s.balance_w(),
+    })
+}
+
+/// The same for people.
+#[must_use]
+pub fn radiosity_text(s: &Summary) -> String {
+    let f = significant;
+    format!(
+        "radiosity: {} patches with edges of {} m, {} sweeps, residual {}; form factors sum up to at most {}\n           {} W emitted, {} W absorbed, {} W escaped; unaccounted for: {} W\n",
+        s.patches,
+        f(s.edge_m, 3),
+        s.sweeps,
+        f(s.residual, 2),
+        f(s.greatest_sum, 7),
+        f(s.emitted_w, 5),
+        f(s.absorbed_w, 5),
+        f(s.escaped_w, 3),
+        f(s.balance_w(), 2)
+    )
 }
 
 /// What a scene holds: `--check`.

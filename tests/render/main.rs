@@ -13,6 +13,7 @@ mod keys;
 mod lights;
 mod meshes;
 mod packets;
+mod radiosity;
 mod reflectometer;
 mod scenes;
 mod shapes;

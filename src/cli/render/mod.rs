@@ -3,6 +3,7 @@
 mod audits;
 mod files;
 mod pictures;
+mod radiosity;
 mod settings;
 mod sheets;
 mod state;
@@ -199,6 +200,10 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         }
         None => None,
     };
+    if work.built.radiosity.is_some() && a.target.is_some() {
+        let message = "--target: the solver \"radiosity\" has no standard errors; expected a `patch_edge` in the scene";
+        return Err(Failure::Message(message.to_owned()));
+    }
     let targets = targets(a, &work.built)?;
     let job = Job { share, folder: folder(a.folder.as_deref())?, targets: &targets, talk };
     match work.render(&job, state.as_mut())? {
@@ -209,6 +214,9 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
 
 /// Why no state can be kept of a scene.
 fn stateless(built: &Built) -> Option<&'static str> {
+    if built.radiosity.is_some() {
+        return Some("the solver \"radiosity\" keeps no state; expected no --checkpoint, --resume and --shard");
+    }
     let around = |kind: &Kind| matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
     if built.instruments.iter().any(|i| i.target.is_some()) {
         Some("the scene has a `target`, and a state is kept only for a number of samples; expected one or the other")

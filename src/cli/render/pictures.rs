@@ -1,11 +1,12 @@
 //! The pictures of a camera: the spectral one, and those made of it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
 
 use super::state::State;
+use super::work::{self, Work};
 use crate::cli::image::{self, ImageCommand};
 use crate::cli::output::Whole;
 use crate::cli::{Failure, Talk};
@@ -13,8 +14,11 @@ use crate::image::format::exr;
 use crate::image::source::Source;
 use crate::render::build::Built;
 use crate::render::description::sensor::Camera as Described;
-use crate::render::film::{Film, Noise};
+use crate::render::film::{self, Film, Noise};
+use crate::render::radiosity::gather::Gatherer;
+use crate::render::radiosity::picture::Picture;
 use crate::render::sensor::camera::Camera;
+use crate::render::spool::Share;
 
 /// What a picture is made with.
 pub(super) struct Job<'a> {
@@ -40,7 +44,64 @@ struct Words {
     command: ImageCommand,
 }
 
-impl Job<'_> {
+/// Where the spectral picture goes: pictures for the eye are made of it, and it is thrown away where nobody asked for it.
+struct Place {
+    path: PathBuf,
+    /// Holds the picture until it is thrown away.
+    folder: Option<tempfile::TempDir>,
+}
+
+impl Place {
+    fn new(job: &Job<'_>) -> Result<Self, Failure> {
+        if let Some(file) = &job.described.exr {
+            return Ok(Self { path: job.folder.join(file), folder: None });
+        }
+        let folder = tempfile::tempdir()?;
+        Ok(Self { path: folder.path().join("picture.exr"), folder: Some(folder) })
+    }
+
+    fn is_kept(&self) -> bool {
+        self.folder.is_none()
+    }
+}
+
+impl<'a> Job<'a> {
+    /// Of the instrument `number` of a render.
+    pub(super) fn new(work: &'a Work, job: &work::Job<'a>, number: usize, camera: &'a Camera) -> Self {
+        let described = work.description.sensor[number].camera.as_ref();
+        Self {
+            built: &work.built,
+            camera,
+            described: described.expect("the instruments are those described").get_ref(),
+            name: &work.built.instruments[number].name,
+            instrument: (number as u64) << 32,
+            samples: work.description.render.samples,
+            adaptive: work.description.render.adaptive,
+            folder: job.folder,
+            inputs: &work.read,
+            talk: job.talk,
+            is_part: job.share != Share::WHOLE,
+        }
+    }
+
+    /// Computes the picture of a solution by radiosity and writes what the scene asks for.
+    pub(super) fn solved(
+        &self,
+        gatherer: &Gatherer<'_>,
+        progress: &ProgressBar,
+        written: &mut Vec<String>,
+    ) -> Result<Noise, Failure> {
+        let place = Place::new(self)?;
+        let description = film::description(self.built.scene.bands(), self.camera);
+        let tristimulus = &self.built.quantities.tristimulus;
+        let mut picture =
+            Picture::new(gatherer, self.camera, description, tristimulus, self.samples, |pixels| progress.inc(pixels));
+        self.write(&place.path, &mut picture)?;
+        let noise = picture.noise();
+        self.derive(&place, progress, written)?;
+        Ok(noise)
+    }
+
     /// Renders the picture and writes what the scene asks for. With a state, the rows go there first, as picture `state.1`.
     pub(super) fn render(
         &self,
@@ -48,11 +109,7 @@ impl Job<'_> {
         progress: &ProgressBar,
         written: &mut Vec<String>,
     ) -> Result<Noise, Failure> {
-        let named = |file: &Option<String>| file.as_ref().map(|f| self.folder.join(f));
-        let spectral = named(&self.described.exr);
-        // Pictures for the eye are made of the spectral one, which is thrown away where nobody asked for it.
-        let folder = tempfile::tempdir()?;
-        let place = spectral.clone().unwrap_or_else(|| folder.path().join("picture.exr"));
+        let place = Place::new(self)?;
         let samples = self.samples;
         let mut film = Film::new(
             &self.built.scene,
@@ -71,7 +128,7 @@ impl Job<'_> {
         let noise = match state {
             None => {
                 survey(&mut film);
-                self.write(&place, &mut film)?;
+                self.write(&place.path, &mut film)?;
                 film.noise()
             }
             Some((state, picture)) => {
@@ -80,15 +137,23 @@ impl Job<'_> {
                     return Ok(Noise::default());
                 }
                 let mut stored = state.picture(picture, film.description().clone());
-                self.write(&place, &mut stored)?;
+                self.write(&place.path, &mut stored)?;
                 stored.noise
             }
         };
-        written.extend(spectral.iter().map(|p| p.display().to_string()));
-        let from = place.display().to_string();
+        self.derive(&place, progress, written)?;
+        Ok(noise)
+    }
+
+    /// Makes the pictures for the eye of the spectral one.
+    fn derive(&self, place: &Place, progress: &ProgressBar, written: &mut Vec<String>) -> Result<(), Failure> {
+        if place.is_kept() {
+            written.push(place.path.display().to_string());
+        }
+        let from = place.path.display().to_string();
         for (verb, target) in [("falsecolor", &self.described.falsecolor), ("convert", &self.described.picture)] {
-            let Some(target) = named(target) else { continue };
-            let to = target.display().to_string();
+            let Some(target) = target else { continue };
+            let to = self.folder.join(target).display().to_string();
             let mut words = vec!["image", verb, &from, "-o", &to];
             // A picture for the screen is tone-mapped; the spectral one beside it holds what was measured.
             words.extend(if verb == "falsecolor" { ["--title", self.name] } else { ["--tone", "reinhard"] });
@@ -98,7 +163,7 @@ impl Job<'_> {
             progress.suspend(|| image::run(words.command, if self.talk.verbose { self.talk } else { quiet }))?;
             written.push(to);
         }
-        Ok(noise)
+        Ok(())
     }
 
     fn write(&self, place: &Path, source: &mut dyn Source) -> Result<(), Failure> {

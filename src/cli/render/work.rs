@@ -21,6 +21,7 @@ use crate::render::description::{self, Description, Model, Solver};
 use crate::render::estimate::REPLICATES;
 use crate::render::goniophotometer::Run;
 use crate::render::measure::{Board, Meter, Target};
+use crate::render::radiosity::Summary;
 use crate::render::reading::{self, Reading};
 use crate::render::spool::{Header, Share, Task};
 use crate::report::envelope::{Envelope, Input};
@@ -42,18 +43,18 @@ pub(super) struct Overrides {
 
 /// A scene that is ready, with all that was read for it.
 pub(super) struct Work {
-    path: String,
+    pub(super) path: String,
     pub built: Built,
-    description: Description,
+    pub(super) description: Description,
     inputs: Vec<Input>,
     /// Paths of the inputs.
     pub read: Vec<String>,
     /// A checksum of everything that the results depend on.
     pub fingerprint: String,
     /// Every meter with its number in the render; instruments are 2³² numbers apart, so that none depends on another's points.
-    meters: Vec<(u64, Meter)>,
+    pub(super) meters: Vec<(u64, Meter)>,
     /// The first meter of each instrument, and the end.
-    first: Vec<usize>,
+    pub(super) first: Vec<usize>,
     begun: Instant,
 }
 
@@ -68,10 +69,12 @@ pub(super) struct Job<'a> {
 
 /// Readings, and the files written.
 pub(super) struct Done {
-    readings: Vec<Reading>,
-    written: Vec<String>,
+    pub(super) readings: Vec<Reading>,
+    pub(super) written: Vec<String>,
     /// What the files written could not carry.
-    findings: Vec<Finding>,
+    pub(super) findings: Vec<Finding>,
+    /// What a solution by radiosity was like.
+    pub(super) radiosity: Option<Summary>,
 }
 
 impl Work {
@@ -125,6 +128,9 @@ impl Work {
 
     /// Samples everything; `None` where only a share was asked for, which is in the state.
     pub(super) fn render(&self, job: &Job<'_>, mut state: Option<&mut State>) -> Result<Option<Done>, Failure> {
+        if let Some(settings) = &self.built.radiosity {
+            return self.solve(job, settings).map(Some);
+        }
         let render = &self.description.render;
         let per_replicate = render.meter_samples.div_ceil(REPLICATES as u64);
         let others: u64 = (self.built.instruments.iter())
@@ -162,25 +168,12 @@ impl Work {
             reached[n] = Some((relative, met));
         }
         progress.set_position(meter_work);
-        let mut done = Done { readings: Vec::new(), written: Vec::new(), findings: Vec::new() };
+        let mut done = Done { readings: Vec::new(), written: Vec::new(), findings: Vec::new(), radiosity: None };
         let place = sheets::Place { folder: job.folder, inputs: &self.read };
         let mut picture = 0;
         for (n, instrument) in self.built.instruments.iter().enumerate() {
             if let Kind::Camera(camera) = &instrument.kind {
-                let described = self.description.sensor[n].camera.as_ref();
-                let job = pictures::Job {
-                    built: &self.built,
-                    camera,
-                    described: described.expect("the instruments are those described").get_ref(),
-                    name: &instrument.name,
-                    instrument: (n as u64) << 32,
-                    samples: render.samples,
-                    adaptive: render.adaptive,
-                    folder: job.folder,
-                    inputs: &self.read,
-                    talk: job.talk,
-                    is_part: job.share != Share::WHOLE,
-                };
+                let job = pictures::Job::new(self, job, n, camera);
                 let stored = state.as_deref_mut().map(|s| (s, picture));
                 let noise = job.render(stored, &progress, &mut done.written)?;
                 picture += 1;
@@ -275,6 +268,10 @@ impl Work {
         result["energy"] = render_audit::energy(&self.built, &audit);
         result["bias"] = render_audit::bias(&self.built, &audit);
         let mut text = report::text(&self.built, &done.readings);
+        if let Some(summary) = &done.radiosity {
+            result["radiosity"] = report::radiosity(summary);
+            text.push_str(&report::radiosity_text(summary));
+        }
         text.push_str(&render_audit::text(&self.built, &audit));
         done.written.iter().for_each(|w| text.push_str(&format!("written: {w}\n")));
         self.print(command, (result, text), as_json, output, findings)?;
@@ -313,7 +310,7 @@ impl Work {
 }
 
 /// A bar for what takes long; hidden where nobody watches.
-fn progress(samples: u64, talk: Talk) -> ProgressBar {
+pub(super) fn progress(samples: u64, talk: Talk) -> ProgressBar {
     use std::io::IsTerminal;
     if talk.quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

@@ -7,6 +7,7 @@ mod instrument;
 mod light;
 mod material;
 mod picture;
+mod radiosity;
 mod surface;
 
 use std::cell::RefCell;
@@ -71,6 +72,8 @@ pub struct Built {
     pub instruments: Vec<Instrument>,
     /// How the solver runs.
     pub settings: Settings,
+    /// How it is solved by radiosity, where that is the solver.
+    pub radiosity: Option<super::radiosity::Settings>,
     /// What the bands add to the quantities that are read.
     pub quantities: Quantities,
     /// The error that is left in sums over wavelength, relative: measured on the products of the scene's own spectra, against 1 nm;
@@ -166,9 +169,11 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     }
     let scene = Scene::new(bands, parts, lights);
     let instruments = builder.instruments(&scene, &surfaces)?;
+    let radiosity = builder.radiosity(&scene, &surfaces, &instruments)?;
     let render = &description.render;
     let follow = match render.solver {
-        Solver::Path => Follow::All,
+        // Of radiosity the audits follow all light as well.
+        Solver::Path | Solver::Radiosity => Follow::All,
         Solver::Whitted => Follow::Specular,
         Solver::Direct | Solver::Preview => Follow::Nothing,
     };
@@ -183,6 +188,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         scene,
         instruments,
         settings,
+        radiosity,
         quantities,
         wavelength_error,
         analysis,

@@ -21,9 +21,11 @@ use serde::Deserialize;
 
 use light::Light;
 use material::Material;
+use quantity::Length;
 use sensor::Sensor;
 use spectrum::SpectrumSource;
 use surface::Shape;
+use toml::Spanned;
 
 use crate::mistake;
 pub use crate::mistake::Mistake as Error;
@@ -79,6 +81,11 @@ pub struct Render {
     pub wavelength_step_nm: Option<f64>,
     /// The greatest error of the sum over wavelengths, relative.
     pub wavelength_tolerance: f64,
+    /// The longest edge of a patch, of radiosity; without it as long as makes some thousand patches.
+    #[schemars(with = "Option<Length>")]
+    pub patch_edge: Option<Spanned<Length>>,
+    /// How far the solution of radiosity may be from that of its equations, relative to all light.
+    pub radiosity_tolerance: f64,
     /// Whether only what the scene requires is modelled.
     pub model: Model,
     /// Whether what mirrors and glass polarise is followed to the next of them; where it matters without it.
@@ -96,6 +103,8 @@ impl Default for Render {
             max_edges: None,
             wavelength_step_nm: None,
             wavelength_tolerance: 1e-3,
+            patch_edge: None,
+            radiosity_tolerance: 1e-6,
             model: Model::Minimal,
             polarisation: None,
         }
@@ -110,6 +119,8 @@ pub enum Solver {
     Path,
     /// Direct light and its reflections in mirrors and glass.
     Whitted,
+    /// All of it, between diffuse surfaces, without random numbers.
+    Radiosity,
     /// Direct light.
     Direct,
     /// Direct light without shadows: a first look, and no measurement.

@@ -12,6 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, direction, finite, positive};
 use super::rounding::gamma;
 use super::{Bounds, Shape};
@@ -143,6 +144,15 @@ impl Shape for Cylinder {
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.point(self.local(ray.origin - self.base + crossing.t * ray.direction), crossing.face)
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        let ([x, y, z], base) = (self.axes, self.base);
+        let (length, radius) = (self.length, self.radius);
+        let side = Chart::Tube { base, axes: self.axes, length, radius };
+        let end = |centre, axes| Chart::Ring { centre, axes, radii: [0.0, radius] };
+        let ends = [(1, end(base, [y, x])), (2, end(base + length * z, [x, y]))];
+        std::iter::once((0, side)).chain(ends.into_iter().filter(|_| self.capped)).collect()
     }
 
     fn area(&self) -> f64 {

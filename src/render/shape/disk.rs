@@ -8,6 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, direction, finite, positive};
 use super::facet::Facet;
 use super::outline::{GAUSS5, SMALL, edge_angle};
@@ -87,6 +88,11 @@ impl Shape for Disk {
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.point(ray.at(crossing.t))
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        let (centre, radii) = (self.facet.anchor, [self.inner, self.radius]);
+        vec![(0, Chart::Ring { centre, axes: [self.x, self.y], radii })]
     }
 
     fn area(&self) -> f64 {

@@ -7,6 +7,7 @@
 //! | [`disk`] | disk and annulus |
 //! | [`rectangle`], [`triangle`], [`polygon`] | flat shapes with straight edges; rectangle also means parallelogram |
 //! | [`polyhedron`] | solid with flat faces |
+//! | [`chart`] | surfaces cut into cells |
 //! | [`shear`], [`rounding`] | a ray's own coordinates, in which tests are watertight; bounds of rounding errors |
 //! | [`error`] | what is wrong with the measures of a shape |
 //!
@@ -14,6 +15,7 @@
 //! [`SurfacePoint::error`] so that a ray from [`SurfacePoint::origin_towards`] never meets the flat or outwardly round surface
 //! that it leaves. Projected solid angles in closed form are accurate relative to themselves, for sources of any size.
 
+pub mod chart;
 pub mod cylinder;
 pub mod disk;
 pub mod error;
@@ -35,6 +37,7 @@ pub mod triangle;
 use glam::DVec3;
 
 use super::ray::{Crossing, Ray, SurfacePoint, Towards};
+use chart::Chart;
 
 /// An axis-aligned box, m. Empty where `min > max` in a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +120,12 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
     fn projected_solid_angle(&self, from: DVec3, normal: DVec3) -> Option<f64> {
         let _ = (from, normal);
         None
+    }
+
+    /// The pieces that it can be cut up in, each with the number that [`Crossing::face`] gives it; in ascending order, and
+    /// none for a surface without bounds.
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        Vec::new()
     }
 }
 

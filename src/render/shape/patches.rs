@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::chart::Chart;
 use super::rounding::cross;
 use super::spherical;
 use super::triangle::uniform_weights;
@@ -40,6 +41,11 @@ impl Patches {
             total
         });
         Self { areas: areas.collect(), patches }
+    }
+
+    /// The triangles, each with the number of its face.
+    pub fn charts(&self) -> Vec<(u32, Chart)> {
+        self.patches.iter().map(|p| (p.face, Chart::Triangle(p.corners))).collect()
     }
 
     /// Area of all, m².

@@ -10,6 +10,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, finite};
 use super::facet::Facet;
 use super::patches::{Patch, Patches};
@@ -99,6 +100,10 @@ impl Shape for Polygon {
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.face.point(ray.at(crossing.t))
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        self.patches.charts()
     }
 
     fn area(&self) -> f64 {

@@ -15,6 +15,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, finite};
 use super::patches::{Patch, Patches};
 use super::polygon::Face;
@@ -152,6 +153,10 @@ impl Shape for Polyhedron {
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.face(crossing.face).point(ray.at(crossing.t))
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        self.patches.charts()
     }
 
     fn area(&self) -> f64 {

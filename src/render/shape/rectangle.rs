@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, finite};
 use super::facet::Facet;
 use super::patches::{Patch, Patches};
@@ -140,6 +141,10 @@ impl Shape for Rectangle {
 
     fn surface(&self, _: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.point(crossing.uv)
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        vec![(0, Chart::Parallelogram { corner: self.facet.anchor, edges: self.edges })]
     }
 
     fn area(&self) -> f64 {

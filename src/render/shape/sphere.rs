@@ -12,6 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, finite, positive};
 use super::rounding::gamma;
 use super::{Bounds, Shape, pdf_of_point, towards_point};
@@ -111,6 +112,10 @@ impl Shape for Sphere {
         let outwards = ray.origin - self.centre + crossing.t * ray.direction;
         // A sphere so small for its distance that the crossing is its centre to the last digit faces the ray.
         self.point(outwards.try_normalize().unwrap_or(-ray.direction))
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        vec![(0, Chart::Sphere { centre: self.centre, radius: self.radius })]
     }
 
     fn area(&self) -> f64 {

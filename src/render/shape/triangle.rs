@@ -10,6 +10,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::chart::Chart;
 use super::error::{ShapeError, finite};
 use super::facet::Facet;
 use super::rounding::{cross, gamma};
@@ -65,6 +66,10 @@ impl Shape for Triangle {
 
     fn surface(&self, _: &Ray, crossing: &Crossing) -> SurfacePoint {
         self.point(crossing.uv)
+    }
+
+    fn charts(&self) -> Vec<(u32, Chart)> {
+        vec![(0, Chart::Triangle(self.corners))]
     }
 
     fn area(&self) -> f64 {
