@@ -97,15 +97,10 @@ impl Choice {
 
     fn words(&self) -> Vec<String> {
         let r = &self.render;
-        let solver = match r.solver {
-            Solver::Path => "path",
-            Solver::Whitted => "whitted",
-            _ => "direct",
-        };
         let model = if r.model == Model::Full { "full" } else { "minimal" };
         vec![
             r.meter_samples.to_string(),
-            solver.to_owned(),
+            r.solver.word().to_owned(),
             r.max_edges.map_or_else(|| "any".to_owned(), |n| n.to_string()),
             format!("{}", r.wavelength_tolerance),
             model.to_owned(),

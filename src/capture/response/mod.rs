@@ -9,6 +9,7 @@
 //! | method | what it is | weak point |
 //! |---|---|---|
 //! | [`monotone`] | robust least squares in codes under g' > 0; a code at an end is a bound; with covariance | seconds, not milliseconds |
+//! | [`smooth`] | least squares in ln g where the noise of codes is known, as smooth as the residuals allow | needs many pixels |
 //! | [`debevec`] | least squares with a penalty on g'' (Debevec and Malik 1997) | may decrease |
 //! | [`robertson`] | alternating means (Robertson, Borman and Stevenson 2003) | noise of the rare codes is kept |
 
@@ -17,6 +18,7 @@ mod debevec;
 mod monotone;
 mod robertson;
 mod samples;
+mod smooth;
 
 use nalgebra::DMatrix;
 
@@ -25,6 +27,7 @@ pub use debevec::debevec;
 pub use monotone::monotone;
 pub use robertson::robertson;
 pub use samples::{Exposures, Sampling, grid};
+pub use smooth::smooth;
 
 /// Codes of a curve.
 pub const LEVELS: usize = 256;

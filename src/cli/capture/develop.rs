@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::brdf;
 use super::calibrate::find_views;
 use super::photos::Photos;
-use super::response::{Method, find, read_table};
+use super::response::{disagreements, read_table, samples};
 use crate::capture::Error;
 use crate::capture::camera::{Calibration, calibrate_lean};
 use crate::capture::flat::Vignetting;
@@ -16,12 +16,14 @@ use crate::capture::manifest::{Exposure, Shows, Stack};
 use crate::capture::merge::{Merge, Range, Respond};
 use crate::capture::noise::{Noise, Residuals};
 use crate::capture::radiance::Radiance;
-use crate::capture::response::Curve;
+use crate::capture::response::{Curve, Sampling, check_order, consistency, smooth};
 use crate::cli::Failure;
 use crate::finding::{Finding, Location};
 
 /// Standard deviations of the noise of a dark code from which on a code is of use.
 const ABOVE_NOISE: f64 = 4.0;
+/// About how many pixels of each stack the response is found from.
+const PIXELS: usize = 4096;
 /// Rms of a flat field from which on it is told that it is none.
 const UNEVEN: f64 = 0.01;
 /// Pictures are kept up to so many samples, about 1 GiB with their errors; beyond, they are merged again when they are asked for.
@@ -119,10 +121,24 @@ impl Darkroom {
             }
             None => {
                 photos.notes.stage("response");
-                Respond::Curves(find(photos, Method::Monotone, None)?.0)
+                let stacks = samples(photos, Sampling { pixels: PIXELS })?;
+                let failed = |e: Error| Failure::Message(e.to_string());
+                check_order(&stacks).map_err(failed)?;
+                let (Some(noise), dark) = (&self.noise, self.range().dark) else { return Ok(()) };
+                let curves = smooth(&stacks, noise, dark).map_err(failed)?;
+                disagreements(photos, &consistency(&stacks, &curves));
+                Respond::Curves(curves)
             }
         });
         Ok(())
+    }
+
+    /// Codes that are of use: those above the noise of the dark.
+    fn range(&self) -> Range {
+        let default = Range::default();
+        let Some(noise) = &self.noise else { return default };
+        let dark = (0..noise.channels()).map(|c| ABOVE_NOISE * noise.at(c, 0.0)).fold(default.dark, f64::max);
+        Range { dark, ..default }
     }
 
     fn find_vignetting(&mut self, photos: &mut Photos) -> Result<(), Failure> {
@@ -193,8 +209,7 @@ impl Darkroom {
         let time = |e: &Exposure| e.time_s.unwrap_or(0.0);
         // The longest tells most of the dark, and what the others should be.
         exposures.sort_by(|a, b| time(b).total_cmp(&time(a)));
-        let dark = (0..noise.channels()).map(|c| ABOVE_NOISE * noise.at(c, 0.0)).fold(Range::default().dark, f64::max);
-        let range = Range { dark, ..Range::default() };
+        let range = self.range();
         let mut merge: Option<Merge> = None;
         for exposure in exposures {
             let added = photos.exposure(exposure).and_then(|(photo, time_s)| {

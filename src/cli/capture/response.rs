@@ -95,6 +95,12 @@ pub(super) fn find(
     }
     .map_err(failed)?;
     let agreement = consistency(&stacks, &curves);
+    disagreements(photos, &agreement);
+    Ok((curves, agreement))
+}
+
+/// Names exposures that disagree with the others.
+pub(super) fn disagreements(photos: &mut Photos, agreement: &Consistency) {
     for share in agreement.exposures.iter().filter(|s| s.samples > 0 && s.offset_ln.abs() > DISAGREES) {
         let message = format!(
             "disagrees with the other exposures of {} by a factor of {:.3}",
@@ -105,10 +111,10 @@ pub(super) fn find(
         let place = Location::default().of_item(&share.name);
         photos.findings.push(Finding::warning("K002", message).hint(hint).at(place));
     }
-    Ok((curves, agreement))
 }
 
-fn samples(photos: &mut Photos, sampling: Sampling) -> Result<Vec<Exposures>, Failure> {
+/// The samples of all stacks; exposures that cannot be read are left out.
+pub(super) fn samples(photos: &mut Photos, sampling: Sampling) -> Result<Vec<Exposures>, Failure> {
     let described = photos.manifest.stack.clone();
     let mut stacks = Vec::new();
     for stack in &described {

@@ -7,7 +7,7 @@ use super::output::{Asked, Traded, settings_file};
 use super::target::place;
 use crate::cli::render::Scene;
 use crate::cli::{Failure, Talk};
-use crate::render::description::{Description, Model, Solver};
+use crate::render::description::{Description, Model};
 use crate::trade::render::sweep;
 
 /// A scene, and the error asked for.
@@ -58,17 +58,12 @@ pub(super) fn trade(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
     };
     let settings = |trial: usize| {
         let render = &found.choices[trial];
-        let solver = match render.solver {
-            Solver::Path => "path",
-            Solver::Whitted => "whitted",
-            Solver::Direct | Solver::Preview => "direct",
-        };
         settings_file(
             &format!("photopic trade render {path}"),
             "render",
             &[
                 ("meter_samples", Some(json!(render.meter_samples))),
-                ("solver", Some(json!(solver))),
+                ("solver", Some(json!(render.solver.word()))),
                 ("max_edges", render.max_edges.map(|n| json!(n))),
                 ("wavelength_tolerance", Some(json!(render.wavelength_tolerance))),
                 ("model", Some(json!(if render.model == Model::Full { "full" } else { "minimal" }))),

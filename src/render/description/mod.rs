@@ -127,6 +127,20 @@ pub enum Solver {
     Preview,
 }
 
+impl Solver {
+    /// Its name in a scene.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Path => "path",
+            Self::Whitted => "whitted",
+            Self::Direct => "direct",
+            Self::Radiosity => "radiosity",
+            Self::Preview => "preview",
+        }
+    }
+}
+
 /// How much is modelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
