@@ -23,6 +23,7 @@ mod pixels;
 mod shape;
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use self::pixels::{Inverse, Pixel};
 use self::shape::Shape;
@@ -55,7 +56,7 @@ const PER_MEDIAN: f64 = 1.482_602_218_505_602;
 pub fn monotone(stacks: &[Exposures]) -> Result<Vec<Curve>, Error> {
     stacks.iter().try_for_each(Exposures::check)?;
     let channels = stacks.first().map_or(0, |s| s.channels);
-    (0..channels).map(|c| solve(stacks, c)).collect()
+    (0..channels).into_par_iter().map(|c| solve(stacks, c)).collect()
 }
 
 /// The sum that is minimised, for given weights, σ and τ; radiances are eliminated.
