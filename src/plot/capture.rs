@@ -11,6 +11,8 @@ use crate::capture::response::Curve;
 
 /// Rows of θ_d whose lobes are drawn at most.
 const MOST_LOBES: usize = 5;
+/// Dots of a row at most.
+const MOST_DOTS: usize = 120;
 /// Part of the pixels of a picture that are brighter than its white.
 const GLARE: f64 = 0.01;
 
@@ -87,7 +89,9 @@ pub fn halves_panel(binned: &Binned, brdf: &dyn Brdf, band: usize, name: &str) -
     }
     chosen.sort_by_key(|row| row.0);
     let mut f = vec![0.0; brdf.bands()];
-    let mut series = |(d, dots): (usize, Vec<(f64, f64)>)| {
+    let mut series = |(d, mut dots): (usize, Vec<(f64, f64)>)| {
+        dots.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let dots = dots.iter().step_by(dots.len().div_ceil(MOST_DOTS)).copied().collect();
         let theta_d = (d as f64 + 0.5) / r.theta_d as f64 * FRAC_PI_2;
         let mut line = Vec::new();
         for n in 0..=360 {

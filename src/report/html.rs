@@ -112,7 +112,9 @@ th,td{padding:.25rem .7rem .25rem 0;text-align:left;vertical-align:top;border-bo
 th{font-weight:600}
 .n{text-align:right}
 td.long{white-space:normal;overflow-wrap:anywhere;min-width:14rem}
-.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,25rem),1fr));gap:1rem;margin:.8rem 0}
+.figures{display:grid;grid-template-columns:minmax(0,1fr);gap:1rem;margin:.8rem 0}
+.drawing{overflow-x:auto}
+.drawing img{min-width:32rem}
 figure{margin:0}
 figure img{display:block;width:100%;height:auto}
 figcaption{font-size:.875rem;color:#4b4b4b;margin:.3rem 0 0}
@@ -121,9 +123,10 @@ li{border-left:.25rem solid #888;padding:.2rem 0 .2rem .7rem;margin:.5rem 0;max-
 li.error{border-color:#b3261e}
 li.warning{border-color:#b26a00}
 li small{color:#4b4b4b}
+@media(min-width:48rem){.figures{grid-template-columns:repeat(3,minmax(0,1fr))}.drawings{grid-template-columns:repeat(2,minmax(0,1fr))}.drawing img{min-width:0}}
 @media print{body{max-width:none;padding:0;font-size:10pt}nav{display:none}figure,tr,li{break-inside:avoid}\
 h2{break-after:avoid}.scroll{overflow:visible}td{white-space:normal}\
-.figures{grid-template-columns:1fr 1fr}}
+.figures{grid-template-columns:repeat(3,minmax(0,1fr))}.drawings{grid-template-columns:repeat(2,minmax(0,1fr))}.drawing img{min-width:0}}
 ";
 
 /// Text as it may stand in HTML, between tags and in attributes.
@@ -181,12 +184,16 @@ impl Block {
             }
             Self::Table(table) => table.write(out),
             Self::Figures(figures) => {
-                out.push_str("<div class=\"figures\">\n");
+                // Drawings have small letters: they get more room, and on a narrow window they scroll.
+                let is_drawing = |f: &Figure| f.uri.starts_with("data:image/svg");
+                let all = if figures.iter().any(is_drawing) { " drawings" } else { "" };
+                let _ = writeln!(out, "<div class=\"figures{all}\">");
                 for f in figures {
+                    let class = if is_drawing(f) { " class=\"drawing\"" } else { "" };
                     let (uri, alt, caption) = (escaped(&f.uri), escaped(&f.alt), escaped(&f.caption));
                     let _ = writeln!(
                         out,
-                        "<figure>\n<img src=\"{uri}\" alt=\"{alt}\">\n<figcaption>{caption}</figcaption>\n</figure>"
+                        "<figure>\n<div{class}><img src=\"{uri}\" alt=\"{alt}\"></div>\n<figcaption>{caption}</figcaption>\n</figure>"
                     );
                 }
                 out.push_str("</div>\n");

@@ -162,7 +162,10 @@ fn stacks_that_cannot_be_are_refused_in_one_message() {
         refused(&linear, "found no sample within the range in photographs");
     }
     assert!(!folder.path().join("x.exr").exists());
-    refused(&["calibrate", "--board", "9x6", "a.png", "b.png", "c.png"], "expected");
+    // A board that is never found: each photograph is named, and what that leaves.
+    let (code, out, error) = run(folder.path(), &["calibrate", "--board", "9x6", "a.png", "b.png", "c.png"]);
+    assert!(code == 2 && out.is_empty() && error.contains("found the board in 0 view(s)"), "{error}");
+    assert!(TIMES.iter().all(|(name, _)| error.contains(&format!("found no board in {name}; expected"))), "{error}");
     refused(&["response", "nothing.toml"], "nothing.toml: cannot be read");
     refused(&["response", "times.csv", "a.png"], "found");
 }

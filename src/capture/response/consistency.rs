@@ -1,6 +1,6 @@
 //! Whether exposures agree with one another.
 
-use super::{Curve, Exposures, LEVELS};
+use super::{Curve, Exposures, GAUGE, LEVELS};
 use crate::capture::Error;
 
 /// Share of the pixels of a pair of exposures from which on an order is believed: more than noise moves.
@@ -12,6 +12,9 @@ const TELLING: u8 = 8;
 const CLEAR: f64 = 3.5;
 /// Normal: standard deviations per median of the absolute value.
 const PER_MEDIAN: f64 = 1.482_602_218_505_602;
+/// Noise of ln g up to which a code is compared: of more than that the mean is not that of the exposure, because curves bend, most of all where
+/// the black of a scan makes them steep.
+const BLURRED: f64 = 0.25;
 /// Least change of ln g over a code: where a curve is flat a code tells nothing.
 const FLAT: f64 = 1e-3;
 /// Times closer than this factor are not ordered.
@@ -46,16 +49,28 @@ pub struct Consistency {
 /// A sample: its exposure, its weight by the noise of codes, ln(g(z)/t).
 type Sample = (usize, f64, f64);
 
-/// Calls `with` for each pixel and channel that two exposures show more than `margin` codes from black and white.
-fn each_pixel(stack: &Exposures, curves: &[Curve], margin: f64, with: &mut impl FnMut(&[Sample])) {
+/// The codes of a curve that are compared where a code has a `noise`: well inside of where it is neither blurred nor at an end. Both are
+/// exclusive.
+fn compared(curve: &Curve, noise: f64) -> (f64, f64) {
+    let blurred = |z: &usize| curve.slope(*z as f64) * noise >= BLURRED;
+    let low = (0..GAUGE).rev().find(blurred).unwrap_or(0);
+    let high = (GAUGE..LEVELS).find(blurred).unwrap_or(LEVELS - 1);
+    (low as f64 + CLEAR * noise, high as f64 - CLEAR * noise)
+}
+
+/// Calls `with` for each pixel and channel that two exposures show where a `noise` of so many codes lets them be compared.
+fn each_pixel(stack: &Exposures, curves: &[Curve], noise: f64, with: &mut impl FnMut(&[Sample])) {
+    let ranges: Vec<(f64, f64)> = curves.iter().map(|c| compared(c, noise)).collect();
     let mut seen: Vec<Sample> = Vec::new();
     for pixel in 0..stack.pixels() {
         for (channel, curve) in curves.iter().enumerate() {
             seen.clear();
+            let (low, high) = ranges[channel];
             for (j, time_s) in stack.times_s.iter().enumerate() {
                 let z = stack.code(j, pixel, channel);
-                if (z as f64) > margin && ((LEVELS - 1 - z) as f64) > margin {
-                    seen.push((j, curve.slope(z as f64).max(FLAT).powi(-2), curve.ln_g[z] - time_s.ln()));
+                if low < z as f64 && (z as f64) < high {
+                    let slope = curve.slope(z as f64).max(FLAT);
+                    seen.push((j, slope.powi(-2), curve.ln_g[z] - time_s.ln()));
                 }
             }
             if seen.len() > 1 {
@@ -91,14 +106,14 @@ fn noise(stacks: &[Exposures], curves: &[Curve]) -> f64 {
 /// Measures how far exposures disagree under curves, one per channel. Samples weigh as the noise of codes has it: by (d ln g/dz)⁻².
 #[must_use]
 pub fn consistency(stacks: &[Exposures], curves: &[Curve]) -> Consistency {
-    let margin = CLEAR * noise(stacks, curves);
+    let noise = noise(stacks, curves);
     let (mut square, mut total) = (0.0, 0.0);
     let mut exposures = Vec::new();
     for stack in stacks {
         let count = stack.times_s.len();
         let (mut offsets, mut squares) = (vec![0.0; count], vec![0.0; count]);
         let (mut weights, mut samples) = (vec![0.0; count], vec![0; count]);
-        each_pixel(stack, curves, margin, &mut |seen| {
+        each_pixel(stack, curves, noise, &mut |seen| {
             let (sum, mean) = mean(seen);
             for (j, w, e) in seen {
                 let others = (mean * sum - w * e) / (sum - w);

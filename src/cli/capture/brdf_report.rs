@@ -93,7 +93,7 @@ fn pictures(
     let energy = "Albedo of the best model over the angle of incidence; above 1 it reflects more than arrives.";
     out.energy.push(figure(albedo_panel(fit.brdf.as_ref(), &names).into(), energy)?);
     let sphere = "The best model as a sphere under a small lamp.";
-    out.energy.push(figure(sphere_panel(fit.brdf.as_ref(), &tint).into(), sphere)?);
+    out.energy.push(picture(sphere_panel(fit.brdf.as_ref(), &tint).into(), sphere)?);
     let factor = if let Scale::Relative { factor } = shown.scale { *factor } else { 1.0 };
     for seen in shown.seen.iter().filter(|s| s.counts.valid > 0) {
         out.maps.extend(maps(photos, room, (scene, fit, factor), seen, &tint, more)?);
@@ -113,30 +113,35 @@ fn maps(
     let Some(stack) = photos.manifest.stack.iter().find(|s| s.name == seen.name).cloned() else {
         return Ok(Vec::new());
     };
-    let (picture, _) = room.picture(photos, &stack)?;
+    let (radiance, _) = room.picture(photos, &stack)?;
     // The values of a relative result were multiplied by the factor: the lights are weaker by it.
     let strength: Vec<f64> = seen.strength.iter().map(|s| s / factor).collect();
-    let Some(maps) = scene.maps(&picture, seen.place, &strength, fit.brdf.as_ref(), SIDE) else {
+    let Some(maps) = scene.maps(&radiance, seen.place, &strength, fit.brdf.as_ref(), SIDE) else {
         return Ok(Vec::new());
     };
     if let Some((median, rms)) = maps.spread() {
         more.residuals.push((seen.name.clone(), median, rms));
     }
-    let (photograph, model, difference) = maps_panels(&maps, tint, picture.channels);
+    let (photograph, model, difference) = maps_panels(&maps, tint, radiance.channels);
     let name = &seen.name;
     Ok(vec![
-        figure(photograph.into(), &format!("{name}: the photograph."))?,
-        figure(model.into(), &format!("{name}: the best model under the same light, with the same white."))?,
-        figure(difference.into(), &format!("{name}: measured over modelled less 1."))?,
+        picture(photograph.into(), &format!("{name}: the photograph."))?,
+        picture(model.into(), &format!("{name}: the best model under the same light, with the same white."))?,
+        drawn(difference.into(), &format!("{name}: measured over modelled less 1."), None, Format::Png)?,
     ])
 }
 
-/// A panel in a page: pictures of pixels as PNG, drawings as SVG.
+/// A drawing in a page: lines and letters stay sharp.
 fn figure(panel: Panel, caption: &str) -> Result<Figure, Failure> {
-    let format = match panel {
-        Panel::Raster(_) | Panel::FalseColour(_) => Format::Png,
-        _ => Format::Svg,
-    };
-    let file = draw(&[panel], None, format).map_err(|e| Failure::Message(e.to_string()))?;
+    drawn(panel, caption, None, Format::Svg)
+}
+
+/// A picture of pixels in a page, small enough to be sent.
+fn picture(panel: Panel, caption: &str) -> Result<Figure, Failure> {
+    drawn(panel, caption, Some((480, 480)), Format::Png)
+}
+
+fn drawn(panel: Panel, caption: &str, size: Option<(u32, u32)>, format: Format) -> Result<Figure, Failure> {
+    let file = draw(&[panel], size, format).map_err(|e| Failure::Message(e.to_string()))?;
     Ok(Figure { uri: data_uri(&file, format), alt: caption.to_owned(), caption: caption.to_owned() })
 }

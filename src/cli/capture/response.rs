@@ -38,7 +38,8 @@ pub(in crate::cli) struct ResponseArgs {
     /// How the curve is found.
     #[arg(long, value_enum, default_value = "monotone")]
     method: Method,
-    /// About how many pixels of each stack are taken, on an even grid; 70 for debevec, as in OpenCV, otherwise 4000.
+    /// About how many pixels of each stack are taken, on an even grid; 70 for debevec, as in OpenCV, otherwise 4000. Of those that tell
+    /// something monotone uses at most 2000 per channel.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
     pixels: Option<u32>,
     #[command(flatten)]

@@ -8,7 +8,7 @@
 //!
 //! Errors are those of codes, and the curve is asked where a code should be, not where noise has put it: averages of ln g over
 //! noisy codes would make it flatter. s is the slope in logarithms, 1 for a linear camera and constant for a power law: the penalty pulls
-//! towards these. σ, the noise of a code, and τ, how much the slope of this camera varies, are found from the photographs, τ as the
+//! towards these. σ, the noise of a code in eight bins of codes, and τ, how much the slope of this camera varies, are found from the photographs, τ as the
 //! evidence has it (D. J. C. MacKay, *Neural Computation* 4 (1992) 415). ρ is Cauchy's: a pixel that moved counts less the further off it
 //! is. The lowest and the highest code that occur are
 //! the ends of the range; a code there says only that the exposure is there or beyond: its term is −2 ln of the probability of that
@@ -23,8 +23,9 @@ mod pixels;
 mod shape;
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
-use self::pixels::{Inverse, Pixel};
+use self::pixels::{Inverse, Noise, Pixel};
 use self::shape::Shape;
 use super::samples::nothing_shared;
 use super::{Curve, Exposures, LEVELS, debevec};
@@ -41,12 +42,7 @@ const STEEPEST: f64 = 7.0;
 /// Most rounds in which σ and τ are found.
 const ROUNDS: usize = 10;
 /// Change of σ and τ, relative, below which they are.
-const SETTLED: f64 = 0.03;
-/// Noise of a code that is rounded: 1/√12.
-const ROUNDING: f64 = 0.288_675_134_594_812_9;
-/// Normal: standard deviations per median of the absolute value.
-const PER_MEDIAN: f64 = 1.482_602_218_505_602;
-
+const SETTLED: f64 = 0.05;
 /// ln g of each channel with its covariance; always rising.
 ///
 /// # Errors
@@ -55,14 +51,13 @@ const PER_MEDIAN: f64 = 1.482_602_218_505_602;
 pub fn monotone(stacks: &[Exposures]) -> Result<Vec<Curve>, Error> {
     stacks.iter().try_for_each(Exposures::check)?;
     let channels = stacks.first().map_or(0, |s| s.channels);
-    (0..channels).map(|c| solve(stacks, c)).collect()
+    (0..channels).into_par_iter().map(|c| solve(stacks, c)).collect()
 }
 
 /// The sum that is minimised, for given weights, σ and τ; radiances are eliminated.
 struct Fit<'a> {
     shape: &'a Shape,
     pixels: &'a [Pixel],
-    sigma: f64,
     /// 1/τ² times the roughness.
     penalty: DMatrix<f64>,
 }
@@ -90,13 +85,13 @@ impl Fit<'_> {
         let mut rows: Vec<(usize, f64, f64, f64)> = Vec::new();
         for pixel in self.pixels {
             rows.clear();
-            let (ln_e, mut total) = (pixel.radiance(&inverse, self.sigma), 0.0);
-            for term in pixel.terms(&inverse, ln_e, self.sigma) {
+            let (ln_e, mut total) = (pixel.radiance(&inverse), 0.0);
+            for term in pixel.terms(&inverse, ln_e) {
                 sums.cost += term.loss;
                 secant += term.weight;
                 tangent += term.curvature;
-                let weight = term.weight * (term.slope / self.sigma).powi(2);
-                let pull = weight * term.residual * self.sigma / term.slope;
+                let weight = term.weight * (term.slope / term.sigma).powi(2);
+                let pull = weight * term.residual * term.sigma / term.slope;
                 let (k, share) = term.code;
                 rows.extend([(k, weight, 1.0 - share, pull), (k + 1, weight, share, pull)]);
                 total += weight;
@@ -136,8 +131,8 @@ impl Problem for Fit<'_> {
         let ln_g = self.shape.ln_g(ln_s);
         let inverse = Inverse(&ln_g);
         let of = |pixel: &Pixel| {
-            let ln_e = pixel.radiance(&inverse, self.sigma);
-            pixel.terms(&inverse, ln_e, self.sigma).map(|t| t.loss).sum::<f64>()
+            let ln_e = pixel.radiance(&inverse);
+            pixel.terms(&inverse, ln_e).map(|t| t.loss).sum::<f64>()
         };
         let s = DVector::from_column_slice(ln_s);
         Some(self.pixels.iter().map(of).sum::<f64>() + s.dot(&(&self.penalty * &s)))
@@ -168,39 +163,29 @@ fn solve(stacks: &[Exposures], channel: usize) -> Result<Curve, Error> {
     let mut ln_s = shape.of(&debevec::solve(stacks, channel, SMOOTH)?.ln_g);
     let mut ln_g = shape.ln_g(&ln_s);
     pixels.iter_mut().for_each(|p| p.start(&ln_g));
-    let (mut sigma, mut tau) = (noise(&pixels, &Inverse(&ln_g)), TAU.1);
+    let mut noise = Noise::of(&pixels, &Inverse(&ln_g));
+    noise.give(&mut pixels, &Inverse(&ln_g));
+    let mut tau = TAU.1;
     for _ in 0..ROUNDS {
-        let fit = Fit { shape: &shape, pixels: &pixels, sigma, penalty: &roughness / (tau * tau) };
+        let fit = Fit { shape: &shape, pixels: &pixels, penalty: &roughness / (tau * tau) };
         let found = minimise(&fit, &ln_s, &low, &high, &limits).ok_or(Error::Singular { what: "response" })?;
         ln_s = found.x;
         ln_g = shape.ln_g(&ln_s);
         let inverse = Inverse(&ln_g);
-        let radiances: Vec<f64> = pixels.iter().map(|p| p.radiance(&inverse, sigma)).collect();
+        let radiances: Vec<f64> = pixels.iter().map(|p| p.radiance(&inverse)).collect();
         pixels.iter_mut().zip(radiances).for_each(|(p, ln_e)| p.ln_e = ln_e);
-        let next = (noise(&pixels, &inverse), variation(&found.at.normal, &roughness, &ln_s, tau));
-        let moved = (next.0 / sigma).ln().abs().max((next.1 / tau).ln().abs());
-        (sigma, tau) = next;
+        let next = (Noise::of(&pixels, &inverse), variation(&found.at.normal, &roughness, &ln_s, tau));
+        let moved = next.0.differs(&noise).max((next.1 / tau).ln().abs());
+        (noise, tau) = next;
+        noise.give(&mut pixels, &inverse);
         if moved < SETTLED {
             break;
         }
     }
-    let fit = Fit { shape: &shape, pixels: &pixels, sigma, penalty: &roughness / (tau * tau) };
+    let fit = Fit { shape: &shape, pixels: &pixels, penalty: &roughness / (tau * tau) };
     let derivative = shape.derivative(&ln_s);
     let covariance = &derivative * fit.covariance(&ln_s) * derivative.transpose();
     Ok(Curve { ln_g, covariance: Some(covariance) })
-}
-
-/// Standard deviation of a code: from the median of the residuals, raised for the radiance that each pixel spends.
-fn noise(pixels: &[Pixel], inverse: &Inverse<'_>) -> f64 {
-    let mut all = Vec::new();
-    for pixel in pixels {
-        let n = pixel.inside().count() as f64;
-        let spent = (n / (n - 1.0)).sqrt();
-        let residuals: Vec<f64> = pixel.terms(inverse, pixel.ln_e, 1.0).map(|t| t.residual.abs()).collect();
-        all.extend(pixel.inside().map(|j| spent * residuals[j]));
-    }
-    let middle = all.len() / 2;
-    (PER_MEDIAN * *all.select_nth_unstable_by(middle, f64::total_cmp).1).max(ROUNDING)
 }
 
 /// τ by the evidence: τ² = roughness over the number of changes of slope that the photographs determine.

@@ -8,6 +8,16 @@ use crate::capture::response::{Exposures, LEVELS, weight};
 
 /// Cauchy's scale in standard deviations: 95 % efficient for Gaussian noise.
 const CAUCHY: f64 = 2.385;
+/// Pixels of a channel at most: with a noise of one code, standard errors are then about 0.002 in ln g.
+const MOST: usize = 2000;
+/// Bins in which the noise of codes is found.
+const BINS: usize = 8;
+/// Samples of a bin from which on it has a noise of its own, known to a tenth.
+const FEWEST: usize = 100;
+/// Noise of a code that is rounded: 1/√12.
+const ROUNDING: f64 = 0.288_675_134_594_812_9;
+/// Normal: standard deviations per median of the absolute value.
+const PER_MEDIAN: f64 = 1.482_602_218_505_602;
 /// Most steps towards the radiance of a pixel.
 const STEPS: usize = 30;
 /// Step, in ln E, below which it is found: errors of the sum are of its square.
@@ -21,6 +31,8 @@ pub(super) struct Pixel {
     ln_t: Vec<f64>,
     /// The lowest and the highest code of the channel: black and white, wherever the camera puts them.
     ends: (usize, usize),
+    /// Noise of each of its codes.
+    sigma: Vec<f64>,
     /// Its radiance, as far as it is known.
     pub ln_e: f64,
 }
@@ -32,6 +44,8 @@ pub(super) struct Term {
     pub code: (usize, f64),
     /// Codes per ln exposure there.
     pub slope: f64,
+    /// Noise of its code.
+    pub sigma: f64,
     /// ρ.
     pub loss: f64,
     /// Code less that of the curve, σ.
@@ -55,7 +69,7 @@ impl Inverse<'_> {
 }
 
 impl Pixel {
-    /// The pixels of a channel that two exposures show within the range; nothing is known of their radiances yet.
+    /// The pixels of a channel that two exposures show within the range, evenly thinned where they are many; nothing is known of their radiances yet.
     pub(super) fn all(stacks: &[Exposures], channel: usize) -> Vec<Self> {
         let places = |s: &Exposures| s.times_s.len() * s.pixels();
         let code = |s: &Exposures, i: usize| s.code(i % s.times_s.len(), i / s.times_s.len(), channel);
@@ -66,13 +80,14 @@ impl Pixel {
             let ln_t: Vec<f64> = stack.times_s.iter().map(|t| t.ln()).collect();
             for n in 0..stack.pixels() {
                 let codes = (0..ln_t.len()).map(|j| stack.code(j, n, channel)).collect();
-                let pixel = Self { codes, ln_t: ln_t.clone(), ends, ln_e: 0.0 };
+                let pixel = Self { codes, ln_t: ln_t.clone(), ends, sigma: vec![1.0; ln_t.len()], ln_e: 0.0 };
                 if pixel.inside().count() > 1 {
                     out.push(pixel);
                 }
             }
         }
-        out
+        let every = out.len().div_ceil(MOST).max(1);
+        out.into_iter().step_by(every).collect()
     }
 
     /// Its samples that are those of an exposure, not an end of the range: numbers of exposures.
@@ -87,27 +102,23 @@ impl Pixel {
         self.ln_e = sum.0 / sum.1;
     }
 
-    /// Each sample at a radiance, for a noise of `sigma` codes.
-    pub(super) fn terms<'a>(
-        &'a self,
-        inverse: &'a Inverse<'_>,
-        ln_e: f64,
-        sigma: f64,
-    ) -> impl Iterator<Item = Term> + 'a {
-        self.codes.iter().zip(&self.ln_t).map(move |(z, t)| {
+    /// Each sample at a radiance.
+    pub(super) fn terms<'a>(&'a self, inverse: &'a Inverse<'_>, ln_e: f64) -> impl Iterator<Item = Term> + 'a {
+        self.codes.iter().zip(&self.ln_t).zip(&self.sigma).map(move |((z, t), sigma)| {
             let (code, slope) = inverse.at(ln_e + t);
-            term(*z, self.ends, code, slope, sigma)
+            term(*z, self.ends, code, slope, *sigma)
         })
     }
 
     /// The radiance that a curve gives: Gauss's and Newton's steps, halved until they gain.
-    pub(super) fn radiance(&self, inverse: &Inverse<'_>, sigma: f64) -> f64 {
+    pub(super) fn radiance(&self, inverse: &Inverse<'_>) -> f64 {
         let at = |ln_e: f64| {
             let (mut loss, mut above, mut below) = (0.0, 0.0, 0.0);
-            for t in self.terms(inverse, ln_e, sigma) {
+            for t in self.terms(inverse, ln_e) {
                 loss += t.loss;
-                above += t.weight * t.slope * t.residual * sigma;
-                below += t.weight * t.slope * t.slope;
+                let slope = t.slope / t.sigma;
+                above += t.weight * slope * t.residual;
+                below += t.weight * slope * slope;
             }
             (loss, if below > 0.0 { (above / below).clamp(-LONGEST, LONGEST) } else { 0.0 })
         };
@@ -126,6 +137,55 @@ impl Pixel {
             }
         }
         ln_e
+    }
+}
+
+/// Noise of a code over codes: at the middles of bins of equal width, between them linear. It is not the same everywhere: light has its own, and
+/// a small movement of the camera is one that grows with the picture.
+pub(super) struct Noise([f64; BINS]);
+
+impl Noise {
+    /// From the medians of the residuals in each bin, raised for the radiance that each pixel spends; a bin with few has what all have.
+    pub(super) fn of(pixels: &[Pixel], inverse: &Inverse<'_>) -> Self {
+        let mut bins: [Vec<f64>; BINS] = std::array::from_fn(|_| Vec::new());
+        for pixel in pixels {
+            let n = pixel.inside().count() as f64;
+            let spent = (n / (n - 1.0)).sqrt();
+            let terms: Vec<Term> = pixel.terms(inverse, pixel.ln_e).collect();
+            for j in pixel.inside() {
+                let t = &terms[j];
+                let bin = (t.code.0 * BINS / LEVELS).min(BINS - 1);
+                bins[bin].push(spent * (t.residual * t.sigma).abs());
+            }
+        }
+        let median = |all: &mut [f64]| {
+            let middle = all.len() / 2;
+            (PER_MEDIAN * *all.select_nth_unstable_by(middle, f64::total_cmp).1).max(ROUNDING)
+        };
+        let mut all: Vec<f64> = bins.iter().flatten().copied().collect();
+        let typical = if all.is_empty() { ROUNDING } else { median(&mut all) };
+        Self(bins.map(|mut bin| if bin.len() < FEWEST { typical } else { median(&mut bin) }))
+    }
+
+    /// At a code.
+    fn at(&self, code: f64) -> f64 {
+        let x = (code * BINS as f64 / LEVELS as f64 - 0.5).clamp(0.0, (BINS - 1) as f64);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to bins")]
+        let k = (x as usize).min(BINS - 2);
+        self.0[k] + (x - k as f64) * (self.0[k + 1] - self.0[k])
+    }
+
+    /// Largest relative difference to another one.
+    pub(super) fn differs(&self, other: &Self) -> f64 {
+        self.0.iter().zip(&other.0).map(|(a, b)| (a / b).ln().abs()).fold(0.0, f64::max)
+    }
+
+    /// Gives each pixel the noise of the codes that it should have.
+    pub(super) fn give(&self, pixels: &mut [Pixel], inverse: &Inverse<'_>) {
+        for pixel in pixels {
+            let codes: Vec<(usize, f64)> = pixel.terms(inverse, pixel.ln_e).map(|t| t.code).collect();
+            pixel.sigma = codes.into_iter().map(|(k, share)| self.at(k as f64 + share)).collect();
+        }
     }
 }
 
@@ -153,7 +213,7 @@ fn term(z: usize, ends: (usize, usize), place: (usize, f64), slope: f64, sigma: 
     let u = plain / (CAUCHY * CAUCHY);
     let tamed = weight / (1.0 + u);
     let curvature = if to_end.is_none() { (1.0 - u) / (1.0 + u).powi(2) } else { tamed };
-    Term { code: place, slope, loss: CAUCHY * CAUCHY * u.ln_1p(), residual, weight: tamed, curvature }
+    Term { code: place, slope, sigma, loss: CAUCHY * CAUCHY * u.ln_1p(), residual, weight: tamed, curvature }
 }
 
 /// −2 ln Φ(t) and φ(t)/Φ(t), of the normal distribution.
