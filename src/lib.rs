@@ -20,4 +20,5 @@ pub mod render;
 pub mod report;
 pub mod spectrum;
 pub mod tables;
+pub mod uncertainty;
 pub mod units;

@@ -32,6 +32,7 @@ mod axis;
 mod background;
 pub mod brdf;
 pub mod brdf_fit;
+mod budget;
 mod cartesian;
 mod chromaticity;
 mod clip;
@@ -64,9 +65,11 @@ mod spectrum_curves;
 mod surface;
 mod svg;
 pub mod terminal;
+pub mod uncertainty;
 mod web;
 
 pub use angular::{AngularCurve, MOST_ANGULAR_CURVES};
+pub use budget::{BudgetBar, BudgetPanel};
 pub use cartesian::{CartesianPanel, IntensityLevel};
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
 pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
@@ -134,6 +137,8 @@ pub enum Panel {
     Surface(SurfacePanel),
     /// A false-colour picture with its legend.
     FalseColour(FalseColourPanel),
+    /// What makes the uncertainty of figures.
+    Budget(BudgetPanel),
 }
 
 macro_rules! panels {
@@ -161,7 +166,8 @@ panels! {
     Dots: DotsPanel,
     Raster: RasterPanel,
     Surface: SurfacePanel,
-    FalseColour: FalseColourPanel
+    FalseColour: FalseColourPanel,
+    Budget: BudgetPanel
 }
 
 impl From<ColourVectorPanel> for Panel {

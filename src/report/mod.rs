@@ -16,3 +16,4 @@ pub mod lamp;
 pub mod render;
 pub mod render_audit;
 pub mod text;
+pub mod uncertainty;
