@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::measurand::{Figures, Scratch};
+use super::Outputs;
 use super::model::{Direction, Model};
 
 /// Step of the differences, as a fraction of the largest sample.
@@ -21,8 +21,8 @@ pub(super) struct Propagated {
 }
 
 /// Propagates all contributions of the model.
-pub(super) fn propagate(model: &Model, figures: &Figures<'_>) -> Propagated {
-    let count = figures.list.len();
+pub(super) fn propagate(model: &Model, figures: &impl Outputs) -> Propagated {
+    let count = figures.count();
     let directions: Vec<Direction> = (0..model.inputs.len()).map(|i| model.direction(i)).collect();
     let gradient = directions.iter().any(|d| !matches!(d, Direction::One(_))).then(|| gradient(model, figures));
     let mut standard = Vec::with_capacity(directions.len());
@@ -74,27 +74,27 @@ fn chain(g: &DMatrix<f64>, standard: &[f64], correlation: &[f64]) -> DMatrix<f64
 }
 
 /// Change of every figure along a change of the samples.
-fn along(model: &Model, figures: &Figures<'_>, direction: &[f64]) -> Vec<f64> {
+fn along(model: &Model, figures: &impl Outputs, direction: &[f64]) -> Vec<f64> {
     let largest = direction.iter().map(|d| d.abs()).fold(0.0, f64::max);
     if largest == 0.0 {
-        return vec![0.0; figures.list.len()];
+        return vec![0.0; figures.count()];
     }
     let step = STEP * model.peak() / largest;
     let at = |h: f64| {
         let values: Vec<f64> = model.values().iter().zip(direction).map(|(v, d)| v + h * d).collect();
-        let mut out = vec![0.0; figures.list.len()];
-        figures.evaluate(&values, &mut Scratch::default(), &mut out);
+        let mut out = vec![0.0; figures.count()];
+        figures.evaluate(&values, &mut Default::default(), &mut out);
         out
     };
     at(step).iter().zip(at(-step)).map(|(a, b)| (a - b) / (2.0 * step)).collect()
 }
 
 /// Derivative of every figure (column) by every sample (row).
-fn gradient(model: &Model, figures: &Figures<'_>) -> DMatrix<f64> {
-    let (samples, count) = (model.values().len(), figures.list.len());
+fn gradient(model: &Model, figures: &impl Outputs) -> DMatrix<f64> {
+    let (samples, count) = (model.values().len(), figures.count());
     let step = STEP * model.peak();
     let mut rows = vec![0.0; samples * count];
-    let room = || (model.values().to_vec(), vec![0.0; count], Scratch::default());
+    let room = || (model.values().to_vec(), vec![0.0; count], Default::default());
     rows.par_chunks_mut(count).enumerate().for_each_init(room, |(values, below, scratch), (i, out)| {
         let kept = values[i];
         values[i] = kept + step;

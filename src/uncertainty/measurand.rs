@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::Error;
+use super::{Error, Outputs};
 use crate::colorimetry::reference::ReferenceScratch;
 use crate::colorimetry::{cct, chromaticity, cri, dominant};
 use crate::conversion::{Converter, Plan, Settings, shape};
@@ -327,8 +327,16 @@ impl<'a> Figures<'a> {
         self.quantity != Quantity::Relative && self.settings.level.is_none()
     }
 
-    /// Writes the values of `list` for a spectrum.
-    pub(super) fn evaluate(&self, measured: &[f64], scratch: &mut Scratch, out: &mut [f64]) {
+}
+
+impl Outputs for Figures<'_> {
+    type Scratch = Scratch;
+
+    fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    fn evaluate(&self, measured: &[f64], scratch: &mut Scratch, out: &mut [f64]) {
         let mut out = out.iter_mut();
         self.each(measured, scratch, |_, value| {
             if let Some(place) = out.next() {

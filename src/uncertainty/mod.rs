@@ -30,6 +30,8 @@ use crate::units::significant;
 
 mod analytic;
 pub mod budget;
+pub mod compare;
+pub mod detector;
 mod measurand;
 mod model;
 mod monte_carlo;
@@ -41,6 +43,18 @@ pub use monte_carlo::Sampled;
 use budget::Budget;
 use measurand::Figures;
 use model::Model;
+
+/// Numbers that follow from the samples of a spectrum.
+trait Outputs: Sync {
+    /// Room that is kept from one evaluation to the next.
+    type Scratch: Default + Send;
+
+    /// How many numbers.
+    fn count(&self) -> usize;
+
+    /// Writes them for the samples given, NaN where undefined.
+    fn evaluate(&self, values: &[f64], scratch: &mut Self::Scratch, out: &mut [f64]);
+}
 
 /// Half-width of the interval of 95 % of a normal distribution, in standard deviations.
 pub const COVERAGE_FACTOR_95: f64 = 1.959_963_984_540_054;

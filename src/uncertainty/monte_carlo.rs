@@ -8,8 +8,8 @@
 
 use rayon::prelude::*;
 
+use super::Outputs;
 use super::budget::MonteCarlo;
-use super::measurand::{Figures, Scratch};
 use super::model::Model;
 use crate::math::random::Stream;
 
@@ -56,8 +56,8 @@ pub(super) fn tolerance(standard: f64, digits: i32) -> f64 {
 type Four = [f64; 4];
 
 /// Simulates until all is told.
-pub(super) fn simulate(model: &Model, figures: &Figures<'_>, settings: &MonteCarlo) -> Simulation {
-    let count = figures.list.len();
+pub(super) fn simulate(model: &Model, figures: &impl Outputs, settings: &MonteCarlo) -> Simulation {
+    let count = figures.count();
     let (batch, most) = match settings.trials {
         Some(trials) => {
             let batches = trials.div_ceil(BATCH);
@@ -86,9 +86,9 @@ pub(super) fn simulate(model: &Model, figures: &Figures<'_>, settings: &MonteCar
 }
 
 /// The figures of a batch of trials, one row each.
-fn fill(model: &Model, figures: &Figures<'_>, seed: u64, first: u64, table: &mut [f64]) {
-    let count = figures.list.len();
-    let room = || (vec![0.0; model.values().len()], Vec::new(), Scratch::default());
+fn fill(model: &Model, figures: &impl Outputs, seed: u64, first: u64, table: &mut [f64]) {
+    let count = figures.count();
+    let room = || (vec![0.0; model.values().len()], Vec::new(), Default::default());
     table.par_chunks_mut(count * AT_ONCE).enumerate().for_each_init(room, |(values, factors, scratch), (chunk, rows)| {
         for (i, row) in rows.chunks_exact_mut(count).enumerate() {
             let mut stream = Stream::new(seed, first + (chunk * AT_ONCE + i) as u64);
