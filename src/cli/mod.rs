@@ -8,7 +8,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 mod brdf;
 mod capture;
+mod compare;
 mod convert;
+mod detector;
 mod image;
 mod lamp;
 mod notes;
@@ -61,6 +63,10 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Parts of a render (`render --shard`) into its readings and pictures.
     Merge(render::MergeArgs),
+    /// Photometers: f1', spectral mismatch factors for a set of lamps, their ranking.
+    Detector(detector::DetectorArgs),
+    /// Two measurements, each with its budget: what of their differences is significant.
+    Compare(compare::CompareArgs),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -118,6 +124,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Capture(command) => capture::run(command, cli.talk),
         Command::Render(arguments) => render::run(&arguments, cli.talk),
         Command::Merge(arguments) => render::merge(&arguments, cli.talk),
+        Command::Detector(arguments) => detector::run(&arguments, cli.talk),
+        Command::Compare(arguments) => compare::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

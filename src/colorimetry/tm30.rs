@@ -133,12 +133,7 @@ impl Plan {
     ///
     /// # Errors
     /// Those of [`Plan::evaluate`].
-    pub fn evaluate_in(
-        &self,
-        scratch: &mut ReferenceScratch,
-        values: &[f64],
-        cct_k: f64,
-    ) -> Result<Tm30, Undefined> {
+    pub fn evaluate_in(&self, scratch: &mut ReferenceScratch, values: &[f64], cct_k: f64) -> Result<Tm30, Undefined> {
         let reference_plan = self.own.as_ref().unwrap_or(&self.test);
         self.reference(cct_k, reference_plan, scratch)?;
         let reference = &scratch.spectrum;

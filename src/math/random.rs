@@ -113,9 +113,9 @@ mod tests {
         let again: [f64; 3] = Stream::new(7, 3).uniforms();
         assert_eq!(again.as_slice(), &numbers[..3]);
         assert_ne!(Stream::new(7, 4).uniform(), again[0]);
-        let sums = (0..count / 2).flat_map(|_| stream.normals()).fold([0.0; 4], |s, z| {
-            [s[0] + z, s[1] + z * z, s[2] + z.powi(4), s[3] + f64::from(z > 1.959_964)]
-        });
+        let sums = (0..count / 2)
+            .flat_map(|_| stream.normals())
+            .fold([0.0; 4], |s, z| [s[0] + z, s[1] + z * z, s[2] + z.powi(4), s[3] + f64::from(z > 1.959_964)]);
         // Moments 0, 1 and 3 and the upper 2.5 %, each within five standard errors: √1, √2, √96 and √(.025·.975) over √n.
         let n = f64::from(count);
         let errors = [1.0, 2f64.sqrt(), 96f64.sqrt(), (0.025_f64 * 0.975).sqrt()];

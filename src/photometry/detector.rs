@@ -10,6 +10,8 @@
 //! s: relative spectral responsivity; S_C: the calibration source (illuminant A); S_Z: the lamp measured. A reading times F is right.
 
 use super::luminous::Efficiency;
+use crate::constants::SecondRadiation;
+use crate::illuminant::planck;
 use crate::spectrum::integrate::{Contract, Quadrature, RuleError, Weighting, dot, weights};
 use crate::spectrum::{Grid, Spectrum};
 
@@ -17,6 +19,21 @@ use crate::spectrum::{Grid, Spectrum};
 pub const RANGE_NM: (f64, f64) = (380.0, 780.0);
 /// Samples of f₁′: one per nm.
 const SAMPLES: usize = 401;
+
+/// Illuminant A by its formula (CIE 15:2018, 4.1: a blackbody with c₂/T = 1.435e-2/2848 m), relative, 300–830 nm by 1 nm.
+///
+/// # Panics
+/// Never: the grid ascends and the values are finite.
+#[must_use]
+pub fn illuminant_a() -> Spectrum {
+    let grid = Grid::uniform(300.0, 1.0, 531).expect("ascending");
+    let at = |w: f64| {
+        planck::radiance(w, 2848.0, SecondRadiation::Nbs1931)
+            / planck::radiance(560.0, 2848.0, SecondRadiation::Nbs1931)
+    };
+    let values = grid.wavelengths_nm().iter().map(|w| 100.0 * at(*w)).collect();
+    Spectrum::density(grid, values).expect("finite")
+}
 
 /// A photometer's figures compiled for a grid of its responsivity, a calibration source and lamps.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,12 +43,12 @@ pub struct Plan {
     v: Vec<f64>,
     /// The calibration source at the samples of f₁′.
     calibration: Vec<f64>,
-    /// ∫ S_C V over ∫ S_C s: the first, and weights of the second by responsivity.
+    /// The calibration source as V(λ) and the detector see it.
     source: Response,
     lamps: Vec<Response>,
 }
 
-/// A source as V(λ) and as the detector see it.
+/// A source as V(λ) and as a detector sees it.
 #[derive(Debug, Clone, PartialEq)]
 struct Response {
     photopic: f64,
@@ -128,7 +145,6 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constants::SecondRadiation;
     use crate::illuminant::named;
 
     fn source(name: &str) -> Spectrum {
@@ -148,7 +164,7 @@ mod tests {
         // Computed apart from this project from CIE's tables of V(λ) and illuminant A, 380–780 nm by 1 nm, as printed.
         for (by_nm, want) in [(1.0, 0.019_103), (2.0, 0.038_067), (5.0, 0.094_127), (-3.0, 0.058_140), (0.0, 0.0)] {
             let (grid, s) = shifted(by_nm);
-            let plan = Plan::new(&grid, &source("A"), &[]).expect("sums");
+            let plan = Plan::new(&grid, &illuminant_a(), &[]).expect("sums");
             let got = plan.figures(&s).f1_prime;
             assert!((got - want).abs() < 5.000_001e-7, "{by_nm}: {got}");
         }

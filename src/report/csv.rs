@@ -63,11 +63,15 @@ impl Table {
         let mut columns = columns(groups, mesopic);
         if uncertainty {
             let no_figure = |c: &String| {
-                ["path", "name", "quantity"].contains(&c.as_str()) || c.starts_with("integration.") || c.starts_with("rgb.")
+                ["path", "name", "quantity"].contains(&c.as_str())
+                    || c.starts_with("integration.")
+                    || c.starts_with("rgb.")
             };
             let figures: Vec<String> = columns.iter().filter(|c| !no_figure(c)).cloned().collect();
             for figure in figures {
-                columns.extend(["standard", "expanded_95.0", "expanded_95.1"].map(|k| format!("uncertainty.{figure}.{k}")));
+                columns.extend(
+                    ["standard", "expanded_95.0", "expanded_95.1"].map(|k| format!("uncertainty.{figure}.{k}")),
+                );
             }
         }
         Self { columns }

@@ -14,10 +14,21 @@ use crate::units::significant;
 
 /// The dotted paths at which a conversion's JSON has a figure, and its value there over the measured one's.
 fn paths(measurand: Measurand, c: &Conversion) -> Vec<(String, f64)> {
+    let quantities: Vec<(Quantity, f64)> = c.absolute.iter().map(|f| (f.quantity, f.factor)).collect();
+    paths_of(measurand, &quantities)
+}
+
+/// The dotted path of a figure of the quantity measured; `None` where JSON does not have it.
+pub(super) fn measured_path(measurand: Measurand, quantity: Quantity) -> Option<String> {
+    paths_of(measurand, &[(quantity, 1.0)]).into_iter().next().map(|(path, _)| path)
+}
+
+/// The same for quantities with their factors.
+fn paths_of(measurand: Measurand, quantities: &[(Quantity, f64)]) -> Vec<(String, f64)> {
     use Measurand as M;
     let one = |path: &str| vec![(path.to_owned(), 1.0)];
     let each = |path: &dyn Fn(Quantity) -> Option<String>, factor: f64| {
-        c.absolute.iter().filter_map(|f| Some((path(f.quantity)?, factor * f.factor))).collect::<Vec<_>>()
+        quantities.iter().filter_map(|(q, f)| Some((path(*q)?, factor * f))).collect::<Vec<_>>()
     };
     match measurand {
         M::Radiometric => each(&|q| Some(format!("radiometric.{}", keys(q)?.radiometric)), 1.0),
@@ -42,7 +53,9 @@ fn paths(measurand: Measurand, c: &Conversion) -> Vec<(String, f64)> {
         M::Rg => one("tm30_rg"),
         M::DaylightEfficacyRatio(k) => one(&format!("alpha_opic.{}.der", RECEPTORS[k])),
         M::AlphaOpicEfficacy(k) => one(&format!("alpha_opic.{}.efficacy_w_per_lm", RECEPTORS[k])),
-        M::EquivalentDaylight(k) => each(&|q| Some(format!("alpha_opic.{}.{}", RECEPTORS[k], alpha_opic_keys(q)?.1)), 1.0),
+        M::EquivalentDaylight(k) => {
+            each(&|q| Some(format!("alpha_opic.{}.{}", RECEPTORS[k], alpha_opic_keys(q)?.1)), 1.0)
+        }
         M::AlphaOpic(k) => each(&|q| Some(format!("alpha_opic.{}.{}", RECEPTORS[k], alpha_opic_keys(q)?.0)), 1.0),
         M::Hazard(key) => each(&|q| Some(format!("hazard.{key}.{}", keys(q)?.radiometric)), 1.0),
         M::Photons => {
@@ -104,7 +117,8 @@ pub fn json(u: &Uncertainty, c: &Conversion) -> Map<String, Value> {
     let row = |name: &str| {
         let found = u.contributions.iter().find(|c| c.name == name);
         let mut standard = Map::new();
-        for (f, s) in u.figures.iter().zip(found.map_or(&[][..], |c| &c.standard)).filter(|(f, _)| f.value.is_finite()) {
+        for (f, s) in u.figures.iter().zip(found.map_or(&[][..], |c| &c.standard)).filter(|(f, _)| f.value.is_finite())
+        {
             for (path, factor) in paths(f.measurand, c) {
                 put(&mut standard, &path, Some(factor * s).filter(|v| v.is_finite()).map_or(Value::Null, Value::from));
             }
@@ -166,14 +180,8 @@ fn shown(quantity: Quantity) -> Vec<(Measurand, String, &'static str)> {
 }
 
 /// Figures whose budget people are shown, as far as there are.
-const BUDGETED: [Measurand; 6] = [
-    Measurand::Photopic,
-    Measurand::Chromaticity(0),
-    Measurand::Cct,
-    Measurand::Duv,
-    Measurand::Ra,
-    Measurand::Rf,
-];
+const BUDGETED: [Measurand; 6] =
+    [Measurand::Photopic, Measurand::Chromaticity(0), Measurand::Cct, Measurand::Duv, Measurand::Ra, Measurand::Rf];
 
 /// Those with name and unit, for a picture.
 #[must_use]

@@ -47,7 +47,11 @@ impl TryFrom<f64> for NotNegative {
     type Error = String;
 
     fn try_from(found: f64) -> Result<Self, String> {
-        if found >= 0.0 { Ok(Self(found)) } else { Err(format!("found `{found}`; expected a number that is not negative")) }
+        if found >= 0.0 {
+            Ok(Self(found))
+        } else {
+            Err(format!("found `{found}`; expected a number that is not negative"))
+        }
     }
 }
 
@@ -294,9 +298,7 @@ impl Budget {
     pub fn parse(text: &str, read: impl Fn(&str) -> Result<String, String>) -> Result<Self, Error> {
         let mut budget: Self = mistake::parse(text)?;
         budget.check(text)?;
-        let text_of = |path: &String| {
-            read(path).map_err(|why| Error::Unreadable { path: path.clone(), why })
-        };
+        let text_of = |path: &String| read(path).map_err(|why| Error::Unreadable { path: path.clone(), why });
         let table = |path: &Option<String>| -> Result<Option<Table>, Error> {
             let Some(path) = path else { return Ok(None) };
             Table::parse(&text_of(path)?).map(Some).map_err(|error| Error::Table { path: path.clone(), error })
@@ -322,14 +324,16 @@ impl Budget {
             Err(Mistake::at(text, &(start..start), message))
         };
         for (i, c) in self.calibration.iter().enumerate() {
-            let given =
-                usize::from(c.relative.is_some()) + usize::from(c.table.is_some()) + usize::from(c.covariance.is_some());
+            let given = usize::from(c.relative.is_some())
+                + usize::from(c.table.is_some())
+                + usize::from(c.covariance.is_some());
             if given != 1 {
                 let message = format!("found {given} of relative, table and covariance; expected one of them");
                 return refuse("[[calibration]]", i, &message);
             }
             if c.covariance.is_some() && c.correlation_length_nm.is_some() {
-                let message = "found correlation_length_nm beside covariance, which holds the correlation; expected one of them";
+                let message =
+                    "found correlation_length_nm beside covariance, which holds the correlation; expected one of them";
                 return refuse("[[calibration]]", i, message);
             }
         }

@@ -242,12 +242,7 @@ impl<'a> Figures<'a> {
         }
     }
 
-    fn luminous(
-        &self,
-        luminous: &Luminous,
-        relative: bool,
-        put: &mut impl FnMut(Measurand, f64),
-    ) {
+    fn luminous(&self, luminous: &Luminous, relative: bool, put: &mut impl FnMut(Measurand, f64)) {
         let ratio = luminous.scotopic_photopic_ratio().unwrap_or(f64::NAN);
         if !relative {
             put(Measurand::Radiometric, luminous.radiometric);
@@ -297,7 +292,10 @@ impl<'a> Figures<'a> {
         let at = largest(values);
         let peak = values[at];
         put(Measurand::PeakWavelength, if peak > 0.0 { x[at] } else { f64::NAN });
-        put(Measurand::CentroidWavelength, dot(&self.plan.centroid, values) / self.plan.luminous.evaluate(values).radiometric);
+        put(
+            Measurand::CentroidWavelength,
+            dot(&self.plan.centroid, values) / self.plan.luminous.evaluate(values).radiometric,
+        );
         if self.plan.sampling == Sampling::Density {
             put(Measurand::Fwhm, shape::full_width(x, values, at, 0.5 * peak).unwrap_or(f64::NAN));
         }
@@ -326,7 +324,6 @@ impl<'a> Figures<'a> {
     pub(super) fn is_proportional(&self) -> bool {
         self.quantity != Quantity::Relative && self.settings.level.is_none()
     }
-
 }
 
 impl Outputs for Figures<'_> {

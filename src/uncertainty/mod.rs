@@ -234,12 +234,7 @@ fn variance(found: f64) -> f64 {
 }
 
 /// What there is to say about the figures.
-fn tell(
-    all: &[FigureUncertainty],
-    simulation: &monte_carlo::Simulation,
-    budget: &Budget,
-    findings: &mut Vec<Finding>,
-) {
+fn tell(all: &[FigureUncertainty], simulation: &monte_carlo::Simulation, budget: &Budget, findings: &mut Vec<Finding>) {
     let some = |chosen: Vec<String>| {
         let more = chosen.len().saturating_sub(NAMED);
         let named: Vec<String> = chosen.into_iter().take(NAMED).collect();
@@ -286,11 +281,16 @@ fn tell(
         findings.push(Finding::warning("U003", message));
     }
     let biased: Vec<String> = defined()
-        .filter(|f| (f.sampled.mean - f.value).abs() > BIASED * f.sampled.standard && f.sampled.standard > 1e-9 * f.value.abs())
+        .filter(|f| {
+            (f.sampled.mean - f.value).abs() > BIASED * f.sampled.standard && f.sampled.standard > 1e-9 * f.value.abs()
+        })
         .map(|f| format!("{} by {}", f.measurand, significant(f.sampled.mean - f.value, 2)))
         .collect();
     if !biased.is_empty() {
-        let message = format!("errors do not cancel but shift the figure by more than half its standard uncertainty: {}", some(biased));
+        let message = format!(
+            "errors do not cancel but shift the figure by more than half its standard uncertainty: {}",
+            some(biased)
+        );
         findings.push(Finding::info("U005", message).hint("a measurement with such errors is off by as much already"));
     }
 }

@@ -46,12 +46,18 @@ enum Kind {
 #[derive(Debug, Clone, Copy)]
 enum Number {
     Offset,
-    WavelengthScale { about_nm: f64 },
-    Bandwidth { fwhm_nm: f64 },
+    WavelengthScale {
+        about_nm: f64,
+    },
+    Bandwidth {
+        fwhm_nm: f64,
+    },
     Linearity,
     StrayLight,
     /// (v/(v + error))².
-    InverseSquare { value: f64 },
+    InverseSquare {
+        value: f64,
+    },
     Factor,
 }
 
@@ -177,7 +183,9 @@ impl Model {
         if let Some((low, high)) = range.filter(|(low, high)| *low > first || *high < last) {
             findings.push(Finding::warning(
                 "U004",
-                format!("{name}: stated for {low}–{high} nm, taken as constant beyond for a spectrum of {first}–{last} nm"),
+                format!(
+                    "{name}: stated for {low}–{high} nm, taken as constant beyond for a spectrum of {first}–{last} nm"
+                ),
             ));
         }
     }
@@ -234,10 +242,14 @@ impl Model {
                 standard: relative.iter().zip(y).map(|(r, v)| r * v).collect(),
                 correlation: correlation.clone(),
             },
-            Kind::Modes(modes) => Direction::Many(DMatrix::from_fn(y.len(), modes.ncols(), |r, c| modes[(r, c)] * y[r])),
+            Kind::Modes(modes) => {
+                Direction::Many(DMatrix::from_fn(y.len(), modes.ncols(), |r, c| modes[(r, c)] * y[r]))
+            }
             Kind::Number(what, u, _) => match *what {
                 Number::Offset => along(&|i| -self.slope(i) * u),
-                Number::WavelengthScale { about_nm } => along(&|i| -self.slope(i) * (self.wavelengths_nm[i] - about_nm) * u),
+                Number::WavelengthScale { about_nm } => {
+                    along(&|i| -self.slope(i) * (self.wavelengths_nm[i] - about_nm) * u)
+                }
                 Number::Bandwidth { fwhm_nm } => along(&|i| fwhm_nm / 6.0 * self.curvatures[i] * u),
                 Number::Linearity => along(&|i| y[i] * (1.0 - y[i] / self.peak) * u),
                 Number::StrayLight => along(&|_| self.mean * u),
@@ -273,7 +285,9 @@ impl Model {
                 match what {
                     Number::Offset => errors.offset_nm += e,
                     Number::WavelengthScale { about_nm } => errors.scale = (e, about_nm),
-                    Number::Bandwidth { fwhm_nm } => errors.bandwidth = ((fwhm_nm + e).powi(2) - fwhm_nm.powi(2)) / 12.0,
+                    Number::Bandwidth { fwhm_nm } => {
+                        errors.bandwidth = ((fwhm_nm + e).powi(2) - fwhm_nm.powi(2)) / 12.0
+                    }
                     Number::Linearity => errors.linearity += e,
                     Number::StrayLight => errors.stray_light += e,
                     Number::InverseSquare { value } => errors.factor *= (value / (value + e)).powi(2),

@@ -89,13 +89,16 @@ pub(super) fn simulate(model: &Model, figures: &impl Outputs, settings: &MonteCa
 fn fill(model: &Model, figures: &impl Outputs, seed: u64, first: u64, table: &mut [f64]) {
     let count = figures.count();
     let room = || (vec![0.0; model.values().len()], Vec::new(), Default::default());
-    table.par_chunks_mut(count * AT_ONCE).enumerate().for_each_init(room, |(values, factors, scratch), (chunk, rows)| {
-        for (i, row) in rows.chunks_exact_mut(count).enumerate() {
-            let mut stream = Stream::new(seed, first + (chunk * AT_ONCE + i) as u64);
-            model.trial(&mut stream, factors, values);
-            figures.evaluate(values, scratch, row);
-        }
-    });
+    table.par_chunks_mut(count * AT_ONCE).enumerate().for_each_init(
+        room,
+        |(values, factors, scratch), (chunk, rows)| {
+            for (i, row) in rows.chunks_exact_mut(count).enumerate() {
+                let mut stream = Stream::new(seed, first + (chunk * AT_ONCE + i) as u64);
+                model.trial(&mut stream, factors, values);
+                figures.evaluate(values, scratch, row);
+            }
+        },
+    );
 }
 
 /// The statistics of the defined values, and the share of the others.

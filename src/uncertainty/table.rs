@@ -124,7 +124,8 @@ impl Covariance {
         for (line, row) in rows {
             let place = |column: u64, message: String| Mistake { line, column, message };
             if row.len() != n + 1 || count == n {
-                let message = format!("found {} cells in row {}; expected {n} rows of {} cells", row.len(), count + 1, n + 1);
+                let message =
+                    format!("found {} cells in row {}; expected {n} rows of {} cells", row.len(), count + 1, n + 1);
                 return Err(place(1, message));
             }
             if number(line, row[0])? != wavelengths_nm[count] {
@@ -142,12 +143,16 @@ impl Covariance {
         let largest = matrix.diagonal().max();
         let asymmetry = (&matrix - matrix.transpose()).amax();
         if asymmetry > ROUNDING * largest {
-            return Err(whole(format!("found a matrix that differs from its transpose by {asymmetry:.2e}; expected a symmetric one")));
+            return Err(whole(format!(
+                "found a matrix that differs from its transpose by {asymmetry:.2e}; expected a symmetric one"
+            )));
         }
         let eigen = SymmetricEigen::new(0.5 * (&matrix + matrix.transpose()));
         let smallest = eigen.eigenvalues.min();
         if smallest < -ROUNDING * largest {
-            return Err(whole(format!("found an eigenvalue of {smallest:.2e}; expected a covariance, which has none below 0")));
+            return Err(whole(format!(
+                "found an eigenvalue of {smallest:.2e}; expected a covariance, which has none below 0"
+            )));
         }
         let mut modes = eigen.eigenvectors;
         for (mut column, value) in modes.column_iter_mut().zip(eigen.eigenvalues.iter()) {
@@ -196,7 +201,8 @@ mod tests {
 
     #[test]
     fn a_covariance_is_that_of_its_modes() {
-        let c = Covariance::parse("nm,400,500,600\n400,4e-4,2e-4,0\n500,2e-4,4e-4,2e-4\n600,0,2e-4,4e-4\n").expect("one");
+        let c =
+            Covariance::parse("nm,400,500,600\n400,4e-4,2e-4,0\n500,2e-4,4e-4,2e-4\n600,0,2e-4,4e-4\n").expect("one");
         let modes = c.modes_at(&[400.0, 450.0, 700.0]);
         let back = &modes * modes.transpose();
         // Half way the variance is (4 + 2·2 + 4)/4 e-4 = 3e-4; beyond the end it is that of 600 nm.

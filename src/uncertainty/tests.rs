@@ -18,9 +18,10 @@ fn converter(groups: Groups) -> Converter {
 /// A white LED: a narrow blue and a broad yellow part, W/(m²·nm), by 5 nm.
 fn led() -> Spectrum {
     let grid = Grid::uniform(380.0, 5.0, 81).expect("ascending");
-    let values = grid.wavelengths_nm().iter().map(|w| {
-        1e-3 * ((-((w - 450.0) / 12.0).powi(2)).exp() + 0.7 * (-((w - 570.0) / 75.0).powi(2)).exp())
-    });
+    let values = grid
+        .wavelengths_nm()
+        .iter()
+        .map(|w| 1e-3 * ((-((w - 450.0) / 12.0).powi(2)).exp() + 0.7 * (-((w - 570.0) / 75.0).powi(2)).exp()));
     let values = values.collect();
     Spectrum::density(grid, values).expect("finite")
 }
@@ -62,7 +63,8 @@ fn independent_noise_has_its_closed_form() {
 
 #[test]
 fn distance_and_aperture_count_twice_and_a_tilted_spectrum_shifts() {
-    let text = "distance = { distance_m = 2.0, standard_m = 0.004 }\naperture = { diameter_m = 0.05, standard_m = 5e-5 }";
+    let text =
+        "distance = { distance_m = 2.0, standard_m = 0.004 }\naperture = { diameter_m = 0.05, standard_m = 5e-5 }";
     let u = uncertainty(Groups::NONE, text, &led());
     let f = u.figure(Measurand::Photopic).expect("lux");
     // 2·0.004/2 and 2·5e-5/0.05.
@@ -73,10 +75,12 @@ fn distance_and_aperture_count_twice_and_a_tilted_spectrum_shifts() {
     assert_eq!(u.ranking(Measurand::Photopic)[0].0, "distance");
     // S = c λ: an offset of 1 nm changes the integral by c ∫V, a constant share of the ends' half slope aside, where V is below 4e-5.
     let grid = Grid::uniform(380.0, 1.0, 401).expect("ascending");
-    let tilted = Spectrum::density(grid.clone(), grid.wavelengths_nm().iter().map(|w| 1e-6 * w).collect()).expect("finite");
+    let tilted =
+        Spectrum::density(grid.clone(), grid.wavelengths_nm().iter().map(|w| 1e-6 * w).collect()).expect("finite");
     let flat = Spectrum::density(grid, vec![1e-6; 401]).expect("finite");
     let u = uncertainty(Groups::NONE, "wavelength = { offset_nm = 0.3 }", &tilted);
-    let lux = converter(Groups::NONE).convert("", Quantity::Irradiance, &flat).expect("converts").value.absolute[0].photopic;
+    let lux =
+        converter(Groups::NONE).convert("", Quantity::Irradiance, &flat).expect("converts").value.absolute[0].photopic;
     assert!((stated(&u, Measurand::Photopic).standard / (0.3 * lux) - 1.0).abs() < 2e-6);
 }
 
@@ -85,7 +89,8 @@ fn a_calibration_goes_from_independent_to_together_with_its_correlation_length()
     let photopic = |text: &str| stated(&uncertainty(Groups::NONE, text, &led()), Measurand::Photopic).standard;
     let together = photopic("calibration = [{ relative = 0.03 }]");
     let apart = photopic("noise = [{ relative = 0.03 }]");
-    let chain = |length: f64| photopic(&format!("calibration = [{{ relative = 0.03, correlation_length_nm = {length} }}]"));
+    let chain =
+        |length: f64| photopic(&format!("calibration = [{{ relative = 0.03, correlation_length_nm = {length} }}]"));
     assert!((chain(1e9) / together - 1.0).abs() < 1e-6 && (chain(1e-3) / apart - 1.0).abs() < 1e-9);
     let middle = chain(40.0);
     assert!(apart < middle && middle < together, "{apart} {middle} {together}");
@@ -98,8 +103,10 @@ fn a_calibration_goes_from_independent_to_together_with_its_correlation_length()
         matrix.push_str(&format!("\n{a}"));
         x.iter().for_each(|b| matrix.push_str(&format!(",{}", 9e-4 * (-(a - b).abs() / 40.0).exp())));
     }
-    let budget = Budget::parse("calibration = [{ covariance = \"c.csv\" }]\nmonte_carlo = { trials = 40000 }", |_| Ok(matrix.clone()))
-        .expect("a budget");
+    let budget = Budget::parse("calibration = [{ covariance = \"c.csv\" }]\nmonte_carlo = { trials = 40000 }", |_| {
+        Ok(matrix.clone())
+    })
+    .expect("a budget");
     let u = evaluate(&converter(Groups::NONE), &budget, Quantity::Irradiance, &spectrum).expect("evaluates").value;
     let f = u.figure(Measurand::Photopic).expect("lux");
     assert!((stated(&u, Measurand::Photopic).standard / middle - 1.0).abs() < 1e-8);

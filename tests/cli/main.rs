@@ -7,6 +7,7 @@ mod exit_codes;
 mod inputs;
 mod outputs;
 mod quantities;
+mod uncertainty;
 
 use std::fs;
 use std::path::{Path, PathBuf};

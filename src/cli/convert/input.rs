@@ -143,9 +143,13 @@ pub(in crate::cli) struct Single {
     pub findings: Vec<Finding>,
 }
 
-/// Opens an input that holds one spectrum, or the one of a name.
-pub(in crate::cli) fn single(path: &str, select: Option<&str>, c2: SecondRadiation) -> Result<Single, Refused> {
-    let said = Said { quantity: None, unit: None };
+/// All spectra of an input that holds them as columns, of the quantity given where the user knows it.
+pub(in crate::cli) fn all(
+    path: &str,
+    quantity: Option<Quantity>,
+    c2: SecondRadiation,
+) -> Result<(Vec<Measured>, Input, Vec<Finding>), Refused> {
+    let said = Said { quantity, unit: None };
     let (items, input, mut findings) = match open(path, &ReadOptions::default(), said, c2, &ProgressBar::hidden())? {
         Loaded::Spectra(items, input, findings) => (items, input, findings),
         Loaded::Stream(..) => {
@@ -156,11 +160,22 @@ pub(in crate::cli) fn single(path: &str, select: Option<&str>, c2: SecondRadiati
     for finding in &mut findings {
         finding.location.path = Some(path.to_owned());
     }
-    let names: Vec<String> = items.iter().map(|i| i.measured.name.clone()).collect();
-    let wanted = |item: &Item| select.is_none_or(|n| n.to_lowercase() == item.measured.name.to_lowercase());
+    Ok((items.into_iter().map(|item| item.measured).collect(), input, findings))
+}
+
+/// Opens an input that holds one spectrum, or the one of a name.
+pub(in crate::cli) fn single(
+    path: &str,
+    select: Option<&str>,
+    quantity: Option<Quantity>,
+    c2: SecondRadiation,
+) -> Result<Single, Refused> {
+    let (items, input, findings) = all(path, quantity, c2)?;
+    let names: Vec<String> = items.iter().map(|m| m.name.clone()).collect();
+    let wanted = |m: &Measured| select.is_none_or(|n| n.to_lowercase() == m.name.to_lowercase());
     let mut chosen = items.into_iter().filter(wanted);
     match (chosen.next(), chosen.next()) {
-        (Some(item), None) => Ok(Single { measured: item.measured, input, findings }),
+        (Some(measured), None) => Ok(Single { measured, input, findings }),
         _ => {
             let some: Vec<&str> = names.iter().take(12).map(String::as_str).collect();
             let more = if names.len() > some.len() { ", …" } else { "" };

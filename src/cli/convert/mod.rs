@@ -6,7 +6,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
-use self::input::{Checksum, Counted, Item, Loaded, Refused, Said};
+use self::input::{Checksum, Counted, Item, Loaded, Said};
 use super::notes::Notes;
 use super::output::{self, Sink};
 use super::writer::{Writer, csv_row};
@@ -22,14 +22,15 @@ use crate::uncertainty::budget::Budget;
 use crate::uncertainty::{self, Uncertainty};
 
 mod args;
-mod budget;
+pub(super) mod budget;
 mod input;
 mod measures;
 mod picture;
 mod stream;
 
 pub(super) use args::{ConvertArgs, RuleArg, positive};
-pub(super) use input::{Single, single};
+use input::Refused;
+pub(super) use input::{Single, all, single};
 pub(super) use measures::{length, range_nm};
 pub(super) use picture::format_of;
 
