@@ -22,4 +22,5 @@ pub mod selfcheck;
 pub mod spectrum;
 pub mod tables;
 pub mod trade;
+pub mod uncertainty;
 pub mod units;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules from the ground up. Those on one line do not import one another.
-const ORDER: [&[&str]; 16] = [
+const ORDER: [&[&str]; 17] = [
     &["finding", "mistake"],
     &["units", "constants"],
     &["math"],
@@ -18,6 +18,7 @@ const ORDER: [&[&str]; 16] = [
     &["photometry"],
     &["colorimetry"],
     &["conversion"],
+    &["uncertainty"],
     &["image"],
     &["luminaire", "brdf"],
     &["capture", "render"],

@@ -8,7 +8,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 mod brdf;
 mod capture;
+mod compare;
 mod convert;
+mod detector;
 mod image;
 mod lamp;
 mod notes;
@@ -70,6 +72,10 @@ enum Command {
     /// Extremes and reference cases, run on this machine: from 1 K to 10⁹ K, from 1e-300 to 1e300 W, grazing angles, tiny and huge scenes;
     /// exit code 1 where one is off.
     Selfcheck(selfcheck::SelfcheckArgs),
+    /// Photometers: f1', spectral mismatch factors for a set of lamps, their ranking.
+    Detector(detector::DetectorArgs),
+    /// Two measurements, each with its budget: what of their differences is significant.
+    Compare(compare::CompareArgs),
     /// The embedded reference tables, with source, checksum and terms.
     Tables(tables::TablesArgs),
     /// Shell completions.
@@ -129,6 +135,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Merge(arguments) => render::merge(&arguments, cli.talk),
         Command::Trade(command) => trade::run(command, cli.talk),
         Command::Selfcheck(arguments) => selfcheck::run(&arguments, cli.talk),
+        Command::Detector(arguments) => detector::run(&arguments, cli.talk),
+        Command::Compare(arguments) => compare::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),
         Command::Man { verb } => manual(verb.as_deref()),

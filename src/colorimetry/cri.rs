@@ -2,7 +2,7 @@
 
 use super::chromaticity::uv_1960;
 use super::observer::Observer;
-use super::reference::ReferencePlan;
+use super::reference::{ReferencePlan, ReferenceScratch};
 use super::samples::SamplePlan;
 use crate::constants::SecondRadiation;
 use crate::illuminant;
@@ -90,10 +90,23 @@ impl Plan {
     /// # Errors
     /// [`Error::Dark`] without luminous content; [`Error::Illuminant`] above 25 000 K, where daylight is not defined.
     pub fn evaluate(&self, values: &[f64], kelvin: f64) -> Result<Cri, Error> {
+        self.evaluate_in(&mut ReferenceScratch::default(), values, kelvin)
+    }
+
+    /// As [`Plan::evaluate`], without allocation where `scratch` has been used before.
+    ///
+    /// # Errors
+    /// Those of [`Plan::evaluate`].
+    pub fn evaluate_in(&self, scratch: &mut ReferenceScratch, values: &[f64], kelvin: f64) -> Result<Cri, Error> {
         let daylight = kelvin >= DAYLIGHT_FROM_K;
-        let reference = if daylight { self.reference.daylight(kelvin)? } else { self.reference.planck(kelvin) };
+        let reference = &mut scratch.spectrum;
+        if daylight {
+            self.reference.daylight(kelvin, reference)?;
+        } else {
+            self.reference.planck(kelvin, reference);
+        }
         let reference_plan = self.own.as_ref().unwrap_or(&self.test);
-        let (light_k, light_r) = (self.test.white(values), reference_plan.white(&reference));
+        let (light_k, light_r) = (self.test.white(values), reference_plan.white(reference));
         let (uv_k, uv_r) = (uv_1960(light_k).ok_or(Error::Dark)?, uv_1960(light_r).ok_or(Error::Dark)?);
         if !(light_k[1] > 0.0 && light_r[1] > 0.0) {
             return Err(Error::Dark);
@@ -107,7 +120,7 @@ impl Plan {
             [w, 13.0 * w * (u - uv_r[0]), 13.0 * w * (v - uv_r[1])]
         };
         let mut r = [0.0; SAMPLES];
-        let pairs = self.test.samples(values).zip(reference_plan.samples(&reference));
+        let pairs = self.test.samples(values).zip(reference_plan.samples(reference));
         for (index, (test, reference)) in r.iter_mut().zip(pairs) {
             let [c, d] = cd(uv_1960(test).ok_or(Error::Dark)?);
             let (c, d) = (c_r / c_k * c, d_r / d_k * d);

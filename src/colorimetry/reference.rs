@@ -5,6 +5,15 @@ use crate::illuminant::{Error, daylight, planck};
 use crate::spectrum::Grid;
 use crate::spectrum::integrate::Weighting;
 
+/// Room for reference spectra, kept from one evaluation to the next.
+#[derive(Debug, Clone, Default)]
+pub struct ReferenceScratch {
+    /// The reference.
+    pub(super) spectrum: Vec<f64>,
+    /// What is mixed into it.
+    pub(super) other: Vec<f64>,
+}
+
 /// Reference spectra on one grid: the daylight components looked up once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferencePlan {
@@ -28,30 +37,30 @@ impl ReferencePlan {
         })
     }
 
-    /// Blackbody radiance on the grid, relative (1 near 560 nm).
-    #[must_use]
-    pub fn planck(&self, kelvin: f64) -> Vec<f64> {
+    /// Blackbody radiance on the grid, relative (1 near 560 nm), in place of what `out` held.
+    pub fn planck(&self, kelvin: f64, out: &mut Vec<f64>) {
         let scale = planck::ln_radiance(560.0, kelvin, self.c2);
+        let wavelengths = self.wavelengths_nm.iter();
+        out.clear();
         if scale < -600.0 {
-            return self
-                .wavelengths_nm
-                .iter()
-                .map(|&w| (planck::ln_radiance(w, kelvin, self.c2) - scale).exp())
-                .collect();
+            out.extend(wavelengths.map(|&w| (planck::ln_radiance(w, kelvin, self.c2) - scale).exp()));
+            return;
         }
         let scale = 1.0 / scale.exp();
-        self.wavelengths_nm.iter().map(|&w| planck::radiance(w, kelvin, self.c2) * scale).collect()
+        out.extend(wavelengths.map(|&w| planck::radiance(w, kelvin, self.c2) * scale));
     }
 
-    /// CIE daylight on the grid (100 at 560 nm), M₁ and M₂ not rounded.
+    /// CIE daylight on the grid (100 at 560 nm), M₁ and M₂ not rounded, in place of what `out` held.
     ///
     /// # Errors
     /// [`Error::DaylightRange`] outside 4000 K … 25000 K.
-    pub fn daylight(&self, kelvin: f64) -> Result<Vec<f64>, Error> {
+    pub fn daylight(&self, kelvin: f64, out: &mut Vec<f64>) -> Result<(), Error> {
         // The daylight locus is defined on the ITS-90 scale.
         let kelvin = kelvin * SecondRadiation::Its90.metre_kelvin() / self.c2.metre_kelvin();
         let [m1, m2] = daylight::multipliers(daylight::chromaticity(kelvin)?);
         let [s0, s1, s2] = &self.daylight;
-        Ok((0..s0.len()).map(|i| s0[i] + m1 * s1[i] + m2 * s2[i]).collect())
+        out.clear();
+        out.extend((0..s0.len()).map(|i| s0[i] + m1 * s1[i] + m2 * s2[i]));
+        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use super::cam02::Cam02;
 use super::cri::{Error, reflectances};
 use super::observer::Observer;
-use super::reference::ReferencePlan;
+use super::reference::{ReferencePlan, ReferenceScratch};
 use super::samples::SamplePlan;
 use crate::constants::SecondRadiation;
 use crate::illuminant;
@@ -49,7 +49,7 @@ pub struct Tm30 {
     /// The bins in order of hue, from 0° in steps of 22.5°; `None` where no sample's reference hue falls into one.
     pub bins: [Option<Bin>; BINS],
     /// Fidelity of each of the 99 samples.
-    pub sample_fidelity: Vec<f64>,
+    pub sample_fidelity: [f64; SAMPLES],
     /// Colour temperature on which the reference was built, K.
     pub cct_k: f64,
 }
@@ -102,19 +102,21 @@ impl Plan {
 
     /// The reference spectrum for a colour temperature: blackbody to 4000 K, daylight from 5000 K, and between them the two
     /// mixed in proportion, each scaled to the same luminous content (CIE 224:2017, 4.2).
-    fn reference(&self, kelvin: f64, plan: &SamplePlan) -> Result<Vec<f64>, Error> {
+    fn reference(&self, kelvin: f64, plan: &SamplePlan, scratch: &mut ReferenceScratch) -> Result<(), Error> {
         let (low, high) = BLEND_K;
+        let ReferenceScratch { spectrum, other } = scratch;
         if kelvin <= low {
-            return Ok(self.reference.planck(kelvin));
+            self.reference.planck(kelvin, spectrum);
+            return Ok(());
         }
-        let daylight = self.reference.daylight(kelvin)?;
-        if kelvin >= high {
-            return Ok(daylight);
+        self.reference.daylight(kelvin, spectrum)?;
+        if kelvin < high {
+            self.reference.planck(kelvin, other);
+            let share = (high - kelvin) / (high - low);
+            let (p, d) = (share / plan.white(other)[1], (1.0 - share) / plan.white(spectrum)[1]);
+            spectrum.iter_mut().zip(other).for_each(|(b, a)| *b = p * *a + d * *b);
         }
-        let planck = self.reference.planck(kelvin);
-        let share = (high - kelvin) / (high - low);
-        let (p, d) = (share / plan.white(&planck)[1], (1.0 - share) / plan.white(&daylight)[1]);
-        Ok(planck.iter().zip(&daylight).map(|(a, b)| p * a + d * b).collect())
+        Ok(())
     }
 
     /// The indices of a spectrum (values on the plan's grid, any scale) of correlated colour temperature `cct_k`,
@@ -124,9 +126,18 @@ impl Plan {
     /// [`Error::Dark`] without luminous content, [`Error::Illuminant`] above 25 000 K, where daylight is not defined,
     /// [`Undefined::Saturated`].
     pub fn evaluate(&self, values: &[f64], cct_k: f64) -> Result<Tm30, Undefined> {
+        self.evaluate_in(&mut ReferenceScratch::default(), values, cct_k)
+    }
+
+    /// As [`Plan::evaluate`], without allocation where `scratch` has been used before.
+    ///
+    /// # Errors
+    /// Those of [`Plan::evaluate`].
+    pub fn evaluate_in(&self, scratch: &mut ReferenceScratch, values: &[f64], cct_k: f64) -> Result<Tm30, Undefined> {
         let reference_plan = self.own.as_ref().unwrap_or(&self.test);
-        let reference = self.reference(cct_k, reference_plan)?;
-        let (white_t, white_r) = (self.test.white(values), reference_plan.white(&reference));
+        self.reference(cct_k, reference_plan, scratch)?;
+        let reference = &scratch.spectrum;
+        let (white_t, white_r) = (self.test.white(values), reference_plan.white(reference));
         if !(white_t[1] > 0.0 && white_r[1] > 0.0) {
             return Err(Error::Dark.into());
         }
@@ -134,14 +145,15 @@ impl Plan {
         let (cam_t, cam_r) = (model(white_t)?, model(white_r)?);
         let mut sums = [[0.0_f64; 5]; BINS];
         let mut counts = [0_usize; BINS];
-        let mut sample_fidelity = Vec::with_capacity(SAMPLES);
+        let mut sample_fidelity = [0.0; SAMPLES];
         let mut total = 0.0;
-        for (test, reference) in self.test.samples(values).zip(reference_plan.samples(&reference)) {
+        let pairs = self.test.samples(values).zip(reference_plan.samples(reference));
+        for (index, (test, reference)) in sample_fidelity.iter_mut().zip(pairs) {
             let t = cam_t.ucs(test.map(|v| v * 100.0 / white_t[1]));
             let r = cam_r.ucs(reference.map(|v| v * 100.0 / white_r[1]));
             let difference = (0..3).map(|i| (t[i] - r[i]).powi(2)).sum::<f64>().sqrt();
             total += difference;
-            sample_fidelity.push(fidelity(difference));
+            *index = fidelity(difference);
             let turn = r[2].atan2(r[1]).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
             let bin = ((turn * BINS as f64) as usize).min(BINS - 1);
             counts[bin] += 1;
@@ -159,7 +171,7 @@ impl Plan {
         };
         let rg = area(2).zip(area(0)).map(|(t, r)| 100.0 * t / r);
         let bins = std::array::from_fn(|j| means[j].map(|m| bin(j, m, counts[j])));
-        Ok(Tm30 { rf: fidelity(total / sample_fidelity.len() as f64), rg, bins, sample_fidelity, cct_k })
+        Ok(Tm30 { rf: fidelity(total / SAMPLES as f64), rg, bins, sample_fidelity, cct_k })
     }
 }
 

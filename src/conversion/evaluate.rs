@@ -1,13 +1,13 @@
 //! From compiled plans and one spectrum to all figures and findings.
 
 use super::figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
-use super::{Error, Plan, Settings};
+use super::{Error, Plan, Settings, shape};
 use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb};
 use crate::finding::{Checked, Finding};
 use crate::photometry::luminous::Luminous;
 use crate::photometry::{alpha_opic, hazard, mesopic, photon, transfer};
 use crate::spectrum::integrate::{Rule, dot};
-use crate::spectrum::{Quantity, Sampling, Spectrum};
+use crate::spectrum::{Quantity, Sampling, Spectrum, largest};
 use crate::units::significant;
 
 /// A relative error bound from which a finding becomes a warning.
@@ -112,7 +112,7 @@ pub(super) fn evaluate(
     }
     undefined_ratios(&out, lit, &luminous, &mut findings);
     if groups.shape {
-        shape(plan, spectrum, luminous.radiometric, &mut out, &mut findings);
+        form(plan, spectrum, luminous.radiometric, &mut out, &mut findings);
     }
     Ok(Checked { value: out, findings })
 }
@@ -374,16 +374,17 @@ fn hazards(plan: &hazard::Plan, values: &[f64], findings: &mut Vec<Finding>) -> 
 }
 
 /// Peak, centroid and full width at half maximum.
-fn shape(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversion, findings: &mut Vec<Finding>) {
-    let (peak_nm, peak) = spectrum.peak();
+fn form(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversion, findings: &mut Vec<Finding>) {
+    let at = largest(spectrum.values());
+    let peak = spectrum.values()[at];
     if peak <= 0.0 {
         return;
     }
-    out.peak_wavelength_nm = Some(peak_nm);
+    out.peak_wavelength_nm = Some(spectrum.wavelengths_nm()[at]);
     let centroid = dot(&plan.centroid, spectrum.values()) / radiometric;
     out.centroid_wavelength_nm = Some(centroid).filter(|c| c.is_finite() && radiometric > 0.0);
     if spectrum.sampling() == Sampling::Density {
-        out.fwhm_nm = full_width(spectrum, peak_nm, 0.5 * peak);
+        out.fwhm_nm = shape::full_width(spectrum.wavelengths_nm(), spectrum.values(), at, 0.5 * peak);
         if out.fwhm_nm.is_none() {
             findings.push(Finding::info(
                 "P009",
@@ -391,15 +392,4 @@ fn shape(plan: &Plan, spectrum: &Spectrum, radiometric: f64, out: &mut Conversio
             ));
         }
     }
-}
-
-/// Distance between the places on both sides of the peak where straight lines between samples first reach `level`.
-fn full_width(spectrum: &Spectrum, peak_nm: f64, level: f64) -> Option<f64> {
-    let (x, y) = (spectrum.wavelengths_nm(), spectrum.values());
-    let at = x.iter().position(|w| *w == peak_nm)?;
-    let cross =
-        |inner: usize, outer: usize| x[inner] + (x[outer] - x[inner]) * (y[inner] - level) / (y[inner] - y[outer]);
-    let left = (1..=at).rev().find(|&i| y[i - 1] <= level).map(|i| cross(i, i - 1))?;
-    let right = (at..x.len() - 1).find(|&i| y[i + 1] <= level).map(|i| cross(i, i + 1))?;
-    Some(right - left)
 }

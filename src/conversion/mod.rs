@@ -20,6 +20,7 @@ use crate::{illuminant, tables};
 mod evaluate;
 mod figures;
 mod scale;
+pub(crate) mod shape;
 
 pub use figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
 pub use scale::{Level, LevelError};
@@ -269,7 +270,7 @@ impl Converter {
         &self.settings
     }
 
-    fn plan(&self, grid: &Arc<Grid>, sampling: Sampling) -> Result<Arc<Plan>, Error> {
+    pub(crate) fn plan(&self, grid: &Arc<Grid>, sampling: Sampling) -> Result<Arc<Plan>, Error> {
         let find = |plans: &[Arc<Plan>]| {
             let same = |p: &&Arc<Plan>| p.sampling == sampling && (Arc::ptr_eq(&p.grid, grid) || p.grid == *grid);
             plans.iter().find(same).cloned()

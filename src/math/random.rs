@@ -58,6 +58,14 @@ impl Stream {
         unit(w, x)
     }
 
+    /// Two independent numbers of the standard normal distribution (G. E. P. Box & M. E. Muller, 1958).
+    pub fn normals(&mut self) -> [f64; 2] {
+        // 1 − u is never 0.
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        let (sin, cos) = (std::f64::consts::TAU * self.uniform()).sin_cos();
+        [radius * cos, radius * sin]
+    }
+
     /// The next `N` numbers.
     pub fn uniforms<const N: usize>(&mut self) -> [f64; N] {
         std::array::from_fn(|_| self.uniform())
@@ -105,6 +113,15 @@ mod tests {
         let again: [f64; 3] = Stream::new(7, 3).uniforms();
         assert_eq!(again.as_slice(), &numbers[..3]);
         assert_ne!(Stream::new(7, 4).uniform(), again[0]);
+        let sums = (0..count / 2)
+            .flat_map(|_| stream.normals())
+            .fold([0.0; 4], |s, z| [s[0] + z, s[1] + z * z, s[2] + z.powi(4), s[3] + f64::from(z > 1.959_964)]);
+        // Moments 0, 1 and 3 and the upper 2.5 %, each within five standard errors: √1, √2, √96 and √(.025·.975) over √n.
+        let n = f64::from(count);
+        let errors = [1.0, 2f64.sqrt(), 96f64.sqrt(), (0.025_f64 * 0.975).sqrt()];
+        for ((sum, want), error) in sums.iter().zip([0.0, 1.0, 3.0, 0.025]).zip(errors) {
+            assert!((sum / n - want).abs() < 5.0 * error / n.sqrt(), "{} for {want}", sum / n);
+        }
         assert_eq!((unit(u32::MAX, u32::MAX), unit(0, 0)), (1.0 - f64::EPSILON / 2.0, 0.0));
     }
 }

@@ -5,9 +5,11 @@
 //! - [`alpha_opic`]: CIE S 026.
 //! - [`photon`]: photon numbers, PAR and PPFD.
 //! - [`hazard`]: blue-light and actinic-UV weighting.
+//! - [`detector`]: f₁′ and spectral mismatch factors of photometers.
 //! - [`transfer`]: geometry that turns one quantity into another.
 
 pub mod alpha_opic;
+pub mod detector;
 pub mod hazard;
 pub mod luminous;
 pub mod mesopic;

@@ -22,7 +22,7 @@ const SHEET: f64 = 1200.0;
 fn natural(panels: &[Panel]) -> (f64, f64) {
     match panels {
         [Panel::ColourAngle(_)] => (1000.0, 720.0),
-        [Panel::Spectrum(_) | Panel::Cartesian(_)] => (1000.0, 600.0),
+        [Panel::Spectrum(_) | Panel::Cartesian(_) | Panel::Budget(_)] => (1000.0, 600.0),
         [Panel::Figures(f)] => (1000.0, f.height(1000.0)),
         [Panel::Isolux(p)] => p.natural(),
         [Panel::FalseColour(p)] => p.natural(),
@@ -105,6 +105,7 @@ impl Panel {
             Self::Raster(p) => &p.title,
             Self::Surface(p) => &p.title,
             Self::FalseColour(p) => &p.title,
+            Self::Budget(p) => &p.title,
         }
     }
 
@@ -128,6 +129,7 @@ impl Panel {
             Self::Raster(p) => p.draw(sheet, area),
             Self::Surface(p) => p.draw(sheet, area),
             Self::FalseColour(p) => p.draw(sheet, area),
+            Self::Budget(p) => p.draw(sheet, area),
         }
     }
 }

@@ -32,6 +32,7 @@ mod axis;
 mod background;
 pub mod brdf;
 pub mod brdf_fit;
+mod budget;
 pub mod capture;
 mod cartesian;
 mod chromaticity;
@@ -66,9 +67,11 @@ mod surface;
 mod svg;
 pub mod terminal;
 mod trade;
+pub mod uncertainty;
 mod web;
 
 pub use angular::{AngularCurve, MOST_ANGULAR_CURVES};
+pub use budget::{BudgetBar, BudgetPanel};
 pub use cartesian::{CartesianPanel, IntensityLevel};
 pub use chromaticity::{ChromaticityPanel, Diagram, LocusPoint, MarkedPoint, PlanckPoint};
 pub use colour_angle::{ColourAnglePanel, ColourPlane, ColourPoint};
@@ -139,6 +142,8 @@ pub enum Panel {
     Surface(SurfacePanel),
     /// A false-colour picture with its legend.
     FalseColour(FalseColourPanel),
+    /// What makes the uncertainty of figures.
+    Budget(BudgetPanel),
 }
 
 macro_rules! panels {
@@ -167,7 +172,8 @@ panels! {
     Trade: TradePanel,
     Raster: RasterPanel,
     Surface: SurfacePanel,
-    FalseColour: FalseColourPanel
+    FalseColour: FalseColourPanel,
+    Budget: BudgetPanel
 }
 
 impl From<ColourVectorPanel> for Panel {

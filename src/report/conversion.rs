@@ -233,7 +233,18 @@ fn bin(b: &Bin) -> Value {
     })
 }
 
-/// The equivalent daylight quantity has a short name where the standard gives it one: EDI for irradiance, EDL for radiance.
+/// Keys of the α-opic quantity and of the equivalent daylight quantity, which has a short name where the standard gives it one: EDI
+/// for irradiance, EDL for radiance.
+pub(super) fn alpha_opic_keys(quantity: Quantity) -> Option<(&'static str, &'static str)> {
+    match quantity {
+        Quantity::Irradiance => Some(("irradiance_w_per_m2", "edi_lx")),
+        Quantity::Radiance => Some(("radiance_w_per_m2_sr", "edl_cd_per_m2")),
+        Quantity::Flux => Some(("flux_w", "equivalent_daylight_flux_lm")),
+        Quantity::Intensity => Some(("intensity_w_per_sr", "equivalent_daylight_intensity_cd")),
+        _ => None,
+    }
+}
+
 fn alpha_opic(c: &Conversion) -> Value {
     let mut out = Map::new();
     for a in &c.alpha_opic {
@@ -241,13 +252,7 @@ fn alpha_opic(c: &Conversion) -> Value {
         one.insert("der".into(), number(a.der));
         one.insert("efficacy_w_per_lm".into(), number(a.efficacy_w_per_lm));
         for f in &c.absolute {
-            let (radiometric, equivalent) = match f.quantity {
-                Quantity::Irradiance => ("irradiance_w_per_m2", "edi_lx"),
-                Quantity::Radiance => ("radiance_w_per_m2_sr", "edl_cd_per_m2"),
-                Quantity::Flux => ("flux_w", "equivalent_daylight_flux_lm"),
-                Quantity::Intensity => ("intensity_w_per_sr", "equivalent_daylight_intensity_cd"),
-                _ => continue,
-            };
+            let Some((radiometric, equivalent)) = alpha_opic_keys(f.quantity) else { continue };
             one.insert(equivalent.into(), (f.factor * a.equivalent_daylight).into());
             one.insert(radiometric.into(), (f.factor * a.radiometric).into());
         }

@@ -57,10 +57,24 @@ pub struct Table {
 }
 
 impl Table {
-    /// The table of the groups of figures.
+    /// The table of the groups of figures; with uncertainties each figure has three more columns.
     #[must_use]
-    pub fn new(groups: Groups, mesopic: bool) -> Self {
-        Self { columns: columns(groups, mesopic) }
+    pub fn new(groups: Groups, mesopic: bool, uncertainty: bool) -> Self {
+        let mut columns = columns(groups, mesopic);
+        if uncertainty {
+            let no_figure = |c: &String| {
+                ["path", "name", "quantity"].contains(&c.as_str())
+                    || c.starts_with("integration.")
+                    || c.starts_with("rgb.")
+            };
+            let figures: Vec<String> = columns.iter().filter(|c| !no_figure(c)).cloned().collect();
+            for figure in figures {
+                columns.extend(
+                    ["standard", "expanded_95.0", "expanded_95.1"].map(|k| format!("uncertainty.{figure}.{k}")),
+                );
+            }
+        }
+        Self { columns }
     }
 
     /// The header row.

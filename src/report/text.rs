@@ -30,7 +30,7 @@ fn show(value: f64) -> String {
 }
 
 /// Name of the luminous quantity.
-fn luminous_name(quantity: Quantity) -> &'static str {
+pub(super) fn luminous_name(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Flux => "luminous flux",
         Quantity::Intensity => "luminous intensity",
@@ -44,7 +44,7 @@ fn luminous_name(quantity: Quantity) -> &'static str {
 }
 
 /// Name of the radiometric quantity.
-fn radiometric_name(quantity: Quantity) -> &'static str {
+pub(super) fn radiometric_name(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Flux => "radiant flux",
         Quantity::Intensity => "radiant intensity",

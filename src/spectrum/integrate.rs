@@ -339,6 +339,20 @@ impl Quadrature {
         self
     }
 
+    /// One weight per entry of the table for the spectrum of these values: Σ weightⱼ·entryⱼ is the same integral, seen as one of the
+    /// weighting.
+    ///
+    /// # Panics
+    /// Where there are fewer values than samples, or fewer than `entries` wavelengths in the table.
+    #[must_use]
+    pub fn entries(&self, values: &[f64], entries: usize) -> Vec<f64> {
+        let mut out = vec![0.0; entries];
+        for term in &self.terms {
+            out[term.entry] += term.factor * values[term.sample];
+        }
+        out
+    }
+
     /// One weight per sample for the weighting of these values, one per wavelength of the table.
     ///
     /// # Panics

@@ -225,12 +225,18 @@ impl Spectrum {
     /// The wavelength and value of the largest sample; the shortest wavelength of several equal ones.
     #[must_use]
     pub fn peak(&self) -> (f64, f64) {
-        let mut best = 0;
-        for (i, v) in self.values.iter().enumerate() {
-            if *v > self.values[best] {
-                best = i;
-            }
-        }
+        let best = largest(&self.values);
         (self.wavelengths_nm()[best], self.values[best])
     }
+}
+
+/// Index of the largest value; the first of several equal ones.
+pub(crate) fn largest(values: &[f64]) -> usize {
+    let mut best = 0;
+    for (i, v) in values.iter().enumerate() {
+        if *v > values[best] {
+            best = i;
+        }
+    }
+    best
 }

@@ -8,6 +8,7 @@ mod inputs;
 mod outputs;
 mod quantities;
 mod trade;
+mod uncertainty;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -90,7 +90,7 @@ pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
             if !Path::new(&path).is_file() {
                 return Err(format!("{path}: there is no such file; expected a spectrum"));
             }
-            let found = single(&path, None, SecondRadiation::default()).map_err(|e| e.message)?;
+            let found = single(&path, None, None, SecondRadiation::default()).map_err(|e| e.message)?;
             if !spectra.contains(&found.input) {
                 spectra.push(found.input);
             }

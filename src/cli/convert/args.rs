@@ -29,11 +29,12 @@ Examples:
   photopic convert line:500nm --scale-to '100 W'              (photons per second)
   photopic convert *.csv --json > results.json
   photopic convert lamp.csv --plot lamp.svg
+  photopic convert lamp.csv --uncertainty budget.toml         (every figure with its uncertainty)
   cat lamp.csv | photopic convert - --csv")]
 pub(in crate::cli) struct ConvertArgs {
     /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
     /// line:555nm.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "budget_schema", value_name = "FILE")]
     pub files: Vec<String>,
 
     #[command(flatten)]
@@ -45,7 +46,24 @@ pub(in crate::cli) struct ConvertArgs {
     #[command(flatten)]
     pub(super) geometry: GeometryArgs,
     #[command(flatten)]
+    pub(super) uncertainty: UncertaintyArgs,
+    #[command(flatten)]
     pub(super) output: Output,
+}
+
+/// Uncertainty.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Uncertainty")]
+pub(super) struct UncertaintyArgs {
+    /// A budget (TOML, docs/uncertainty.md): every figure with its standard uncertainty and its interval of 95 %.
+    #[arg(long = "uncertainty", value_name = "BUDGET")]
+    pub budget: Option<PathBuf>,
+    /// Draw the budget (one input): a .svg or .png file.
+    #[arg(long, value_name = "FILE", requires = "budget")]
+    pub budget_plot: Option<PathBuf>,
+    /// Print the JSON schema of budgets.
+    #[arg(long, conflicts_with_all = ["files", "budget"])]
+    pub budget_schema: bool,
 }
 
 /// How the input is read.

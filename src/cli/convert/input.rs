@@ -145,9 +145,23 @@ pub(in crate::cli) struct Single {
     pub findings: Vec<Finding>,
 }
 
-/// Opens an input that holds one spectrum, or the one of a name.
-pub(in crate::cli) fn single(path: &str, select: Option<&str>, c2: SecondRadiation) -> Result<Single, Refused> {
-    let said = Said { quantity: None, unit: None };
+/// All spectra of an input that holds them as columns, of the quantity given where the user knows it.
+pub(in crate::cli) fn all(
+    path: &str,
+    quantity: Option<Quantity>,
+    c2: SecondRadiation,
+) -> Result<(Vec<Measured>, Input, Vec<Finding>), Refused> {
+    let (items, input, findings) = columns(path, quantity, c2)?;
+    Ok((items.into_iter().map(|item| item.measured).collect(), input, findings))
+}
+
+/// The same with what is known of each beside its measurement.
+fn columns(
+    path: &str,
+    quantity: Option<Quantity>,
+    c2: SecondRadiation,
+) -> Result<(Vec<Item>, Input, Vec<Finding>), Refused> {
+    let said = Said { quantity, unit: None };
     let (items, input, mut findings) = match open(path, &ReadOptions::default(), said, c2, &ProgressBar::hidden())? {
         Loaded::Spectra(items, input, findings) => (items, input, findings),
         Loaded::Stream(..) => {
@@ -158,8 +172,19 @@ pub(in crate::cli) fn single(path: &str, select: Option<&str>, c2: SecondRadiati
     for finding in &mut findings {
         finding.location.path = Some(path.to_owned());
     }
+    Ok((items, input, findings))
+}
+
+/// Opens an input that holds one spectrum, or the one of a name.
+pub(in crate::cli) fn single(
+    path: &str,
+    select: Option<&str>,
+    quantity: Option<Quantity>,
+    c2: SecondRadiation,
+) -> Result<Single, Refused> {
+    let (items, input, findings) = columns(path, quantity, c2)?;
     let names: Vec<String> = items.iter().map(|i| i.measured.name.clone()).collect();
-    let wanted = |item: &Item| select.is_none_or(|n| n.to_lowercase() == item.measured.name.to_lowercase());
+    let wanted = |i: &Item| select.is_none_or(|n| n.to_lowercase() == i.measured.name.to_lowercase());
     let mut chosen = items.into_iter().filter(wanted);
     match (chosen.next(), chosen.next()) {
         (Some(item), None) => Ok(Single { measured: item.measured, defined: item.defined, input, findings }),

@@ -6,7 +6,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
-use self::input::{Checksum, Counted, Item, Loaded, Refused, Said};
+use self::input::{Checksum, Counted, Item, Loaded, Said};
 use super::notes::Notes;
 use super::output::{self, Sink};
 use super::writer::{Writer, csv_row};
@@ -15,11 +15,14 @@ use crate::conversion::{Conversion, Converter};
 use crate::finding::{Checked, Finding, Location};
 use crate::photometry::transfer;
 use crate::report::envelope::{Envelope, Input};
-use crate::report::{conversion as json_report, csv as csv_report, text};
+use crate::report::{conversion as json_report, csv as csv_report, text, uncertainty as uncertainty_report};
 use crate::spectrum::format::{Measured, Printed, RowStream};
 use crate::spectrum::{Quantity, Spectrum};
+use crate::uncertainty::budget::Budget;
+use crate::uncertainty::{self, Uncertainty};
 
 mod args;
+pub(super) mod budget;
 mod input;
 mod measures;
 mod picture;
@@ -27,7 +30,8 @@ mod settings;
 mod stream;
 
 pub(super) use args::{ConvertArgs, RuleArg, positive};
-pub(super) use input::{Single, single};
+use input::Refused;
+pub(super) use input::{Single, all, single};
 pub(super) use measures::{length, range_nm};
 pub(super) use picture::format_of;
 
@@ -38,6 +42,7 @@ const INPUTS_AT_ONCE: usize = 64;
 struct Job<'a> {
     arguments: &'a ConvertArgs,
     converter: Converter,
+    budget: Option<Budget>,
     table: csv_report::Table,
     form: Form,
 }
@@ -58,6 +63,12 @@ enum Form {
     Csv,
 }
 
+/// The figures of a spectrum, and what they are worth.
+struct Converted {
+    conversion: Conversion,
+    uncertainty: Option<Uncertainty>,
+}
+
 /// One converted spectrum, ready to be written, and what was noticed.
 struct Done {
     bytes: Vec<u8>,
@@ -66,23 +77,28 @@ struct Done {
 }
 
 pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
+    if arguments.uncertainty.budget_schema {
+        return Ok(writeln!(std::io::stdout().lock(), "{:#}", crate::uncertainty::budget::schema())?);
+    }
     if let Some(path) = arguments.integration.settings.clone() {
         settings::apply(&path, &mut arguments.integration)?;
     }
     let settings = arguments.settings();
+    let budget = arguments.uncertainty.budget.as_deref().map(budget::read).transpose()?;
     settings.geometry.check().map_err(|e| Failure::Message(e.to_string()))?;
     if arguments.files.iter().filter(|f| *f == "-").count() > 1 {
         return Err(Failure::Message("`-` given twice; expected standard input once".into()));
     }
     let plot = arguments.output.plot.as_deref().map(picture::format_of).transpose()?;
+    let budget_plot = arguments.uncertainty.budget_plot.as_deref().map(picture::format_of).transpose()?;
     let form = match (arguments.output.json, arguments.output.csv) {
         (true, _) => Form::Json,
         (_, true) => Form::Csv,
         _ => Form::Text,
     };
-    let table = csv_report::Table::new(settings.groups, settings.mesopic_adaptation.is_some());
+    let table = csv_report::Table::new(settings.groups, settings.mesopic_adaptation.is_some(), budget.is_some());
     let settings_json = json_report::settings(&settings);
-    let job = Job { arguments: &arguments, converter: Converter::new(settings), table, form };
+    let job = Job { arguments: &arguments, converter: Converter::new(settings), budget, table, form };
     if let (Some(results), Some(picture)) = (&arguments.output.output, &arguments.output.plot)
         && output::same_file(results, picture)
     {
@@ -144,6 +160,9 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
     if let (Some(path), Some(format)) = (&arguments.output.plot, plot) {
         let picture = picture::draw(&kept, job.converter.settings(), arguments.output.plot_kind, format)?;
         output::write_file(path, &picture, &arguments.files)?;
+    }
+    if let (Some(path), Some(format)) = (&arguments.uncertainty.budget_plot, budget_plot) {
+        output::write_file(path, &picture::draw_budget(&kept, format)?, &arguments.files)?;
     }
     if notes.failed { Err(Failure::Reported) } else { Ok(()) }
 }
@@ -209,25 +228,27 @@ fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Do
         message: format!("{heading}: {message}"),
         finding: Box::new(Finding::error("P000", message).at(place.clone())),
     };
-    let Checked { value, mut findings } = convert(job, name, *quantity, spectrum).map_err(|m| refuse(&m))?;
+    let Checked { value: Converted { conversion: value, uncertainty }, mut findings } =
+        convert(job, name, *quantity, spectrum).map_err(|m| refuse(&m))?;
     // The steps of a tabulated illuminant are its definition, not a coarse measurement of it.
     findings.retain(|f| !(item.defined && f.code == "P003"));
     for finding in &mut findings {
         finding.location = place.clone();
     }
-    let bytes = render(job, path, &heading, &value, &item.printed);
-    let drawn = job.arguments.output.plot.is_some().then(|| {
+    let bytes = render(job, path, &heading, (&value, uncertainty.as_ref()), &item.printed);
+    let wanted = job.arguments.output.plot.is_some() || job.arguments.uncertainty.budget_plot.is_some();
+    let drawn = wanted.then(|| {
         // A column's header says less than the file's name, where the file holds nothing else.
         let file = std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy());
         let title = if several { name.clone() } else { file.into_owned() };
-        picture::Kept { name: title, conversion: value, spectrum: spectrum.clone() }
+        picture::Kept { name: title, conversion: value, spectrum: spectrum.clone(), uncertainty }
     });
     Ok(Done { bytes, findings, drawn })
 }
 
 /// Converts, and refuses quantities that were asked for and do not follow.
-fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -> Result<Checked<Conversion>, String> {
-    let out = job.converter.convert(name, quantity, spectrum).map_err(|e| e.to_string())?;
+fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -> Result<Checked<Converted>, String> {
+    let mut out = job.converter.convert(name, quantity, spectrum).map_err(|e| e.to_string())?;
     for wanted in &job.arguments.geometry.to {
         if out.value.absolute.iter().all(|f| f.quantity != *wanted) {
             let from = out.value.quantity;
@@ -238,22 +259,39 @@ fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -
             ));
         }
     }
-    Ok(out)
+    let uncertainty = match &job.budget {
+        None => None,
+        Some(budget) => {
+            let found = uncertainty::evaluate(&job.converter, budget, quantity, spectrum).map_err(|e| e.to_string())?;
+            out.findings.extend(found.findings);
+            Some(found.value)
+        }
+    };
+    Ok(out.map(|conversion| Converted { conversion, uncertainty }))
 }
 
-fn render(job: &Job<'_>, path: &str, heading: &str, c: &Conversion, printed: &[Printed]) -> Vec<u8> {
+fn render(
+    job: &Job<'_>,
+    path: &str,
+    heading: &str,
+    (c, uncertainty): (&Conversion, Option<&Uncertainty>),
+    printed: &[Printed],
+) -> Vec<u8> {
     let settings = job.converter.settings();
+    let uncertain = uncertainty.filter(|_| job.form == Form::Text).map(|u| uncertainty_report::text(u, c));
     if job.form == Form::Text && printed.is_empty() {
-        return text::conversion(heading, c, settings).into_bytes();
+        return (text::conversion(heading, c, settings) + &uncertain.unwrap_or_default()).into_bytes();
     }
     let mut object = Map::new();
     object.insert("path".into(), path.into());
     object.extend(json_report::json(c, settings));
+    object.extend(uncertainty.map(|u| uncertainty_report::json(u, c)).unwrap_or_default());
     let compared = json_report::instrument(&object, printed);
     match job.form {
         Form::Text => {
             let mut out = text::conversion(heading, c, settings);
             out.push_str(&text::instrument(&compared));
+            out.push_str(&uncertain.unwrap_or_default());
             out.into_bytes()
         }
         Form::Json => {

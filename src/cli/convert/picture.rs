@@ -6,8 +6,11 @@ use super::args::PlotKind;
 use crate::cli::Failure;
 use crate::conversion::{Conversion, Settings};
 use crate::plot::conversion::{Drawn, chromaticity_panel, colour_vector_panel, spectrum_panel};
+use crate::plot::uncertainty::budget_panel;
 use crate::plot::{Diagram, Format, Panel, draw as draw_panels};
+use crate::report::uncertainty::budgeted;
 use crate::spectrum::Spectrum;
+use crate::uncertainty::Uncertainty;
 
 /// Curves in one drawing at most: more cannot be told apart.
 const MOST_CURVES: usize = 64;
@@ -17,6 +20,7 @@ pub(super) struct Kept {
     pub name: String,
     pub conversion: Conversion,
     pub spectrum: Spectrum,
+    pub uncertainty: Option<Uncertainty>,
 }
 
 /// The picture format that a file name asks for.
@@ -63,4 +67,14 @@ pub(super) fn draw(kept: &[Kept], settings: &Settings, kind: PlotKind, format: F
         }
     };
     draw_panels(&panels, None, format).map_err(|e| fail(e.to_string()))
+}
+
+/// Draws the budget of the one spectrum kept.
+pub(super) fn draw_budget(kept: &[Kept], format: Format) -> Result<Vec<u8>, Failure> {
+    let fail = |message: String| Failure::Message(format!("--budget-plot: {message}"));
+    let [Kept { name, conversion, uncertainty: Some(uncertainty), .. }] = kept else {
+        return Err(fail(format!("{} spectra in memory; expected one; choose with --select", kept.len())));
+    };
+    let panel = budget_panel(name, uncertainty, &budgeted(conversion.quantity));
+    draw_panels(&[panel.into()], None, format).map_err(|e| fail(e.to_string()))
 }

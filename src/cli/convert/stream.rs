@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::input::{Counted, Refused};
-use super::{Done, Job, convert, in_file, render, same_name, wanted};
+use super::{Converted, Done, Job, convert, in_file, render, same_name, wanted};
 use crate::cli::Failure;
 use crate::cli::notes::Notes;
 use crate::cli::writer::Writer;
@@ -128,10 +128,12 @@ fn row_done(job: &Job<'_>, path: &str, grid: &Arc<Grid>, scale: &Scale, row: Row
         finding: Box::new(Finding::error("P000", message).at(place.clone())),
     };
     let spectrum = scale.apply(grid, row.values).map_err(|e| refuse(&e.to_string()))?;
-    let Checked { value, mut findings } = convert(job, &row.name, scale.quantity, &spectrum).map_err(|m| refuse(&m))?;
+    let Checked { value: Converted { conversion, uncertainty }, mut findings } =
+        convert(job, &row.name, scale.quantity, &spectrum).map_err(|m| refuse(&m))?;
     for finding in &mut findings {
         finding.location = place.clone();
     }
     let heading = format!("{path} [{}]", row.name);
-    Ok(Done { bytes: render(job, path, &heading, &value, &[]), findings, drawn: None })
+    let bytes = render(job, path, &heading, (&conversion, uncertainty.as_ref()), &[]);
+    Ok(Done { bytes, findings, drawn: None })
 }

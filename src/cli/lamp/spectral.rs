@@ -111,7 +111,7 @@ pub(super) fn spectral(arguments: &SpectralArgs, talk: Talk) -> Result<(), Failu
     let mut all = findings;
     let given = match &arguments.spd {
         None => None,
-        Some(spd) => match single(spd, arguments.select.as_deref(), settings.c2) {
+        Some(spd) => match single(spd, arguments.select.as_deref(), None, settings.c2) {
             Ok(Single { measured, input, findings, .. }) => {
                 envelope.input(input);
                 // That a spectrum is relative does not matter here.

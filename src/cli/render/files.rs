@@ -72,7 +72,7 @@ impl Files for Scene {
         if !Path::new(&path).is_file() {
             return Err(format!("{path}: no such file; expected a spectrum"));
         }
-        let found = single(&path, None, SecondRadiation::default()).map_err(|e| e.message)?;
+        let found = single(&path, None, None, SecondRadiation::default()).map_err(|e| e.message)?;
         self.note(found.input);
         Ok(found.measured.spectrum)
     }

@@ -38,7 +38,7 @@ pub(super) fn trade(arguments: &SpectrumArgs, talk: Talk) -> Result<(), Failure>
     let figure = place(&FIGURES, &arguments.figure)?;
     asked.error.as_ref().map(|t| t.of(&FIGURES[figure])).transpose()?;
     let path = &arguments.file;
-    let read = single(path, arguments.select.as_deref(), SecondRadiation::default())
+    let read = single(path, arguments.select.as_deref(), None, SecondRadiation::default())
         .map_err(|e| Failure::Message(e.message))?;
     let found = sweep(&read.measured.spectrum, &Settings::default(), read.defined, asked.repeats as usize)
         .map_err(|e| Failure::Message(format!("{path}: {e}")))?;
