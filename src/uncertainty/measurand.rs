@@ -261,12 +261,11 @@ impl<'a> Figures<'a> {
     fn chromaticity(&self, values: &[f64], xyz: [f64; 3], put: &mut impl FnMut(Measurand, f64)) {
         const UNDEFINED: [f64; 2] = [f64::NAN; 2];
         let xy = chromaticity::xy(xyz).filter(|_| xyz[1] > 0.0);
-        let pairs = [xy, chromaticity::uv_prime(xyz)].map(|p| p.unwrap_or(UNDEFINED));
-        for k in 0..2 {
-            put(Measurand::Chromaticity(k), pairs[0][k]);
+        for (k, value) in xy.unwrap_or(UNDEFINED).into_iter().enumerate() {
+            put(Measurand::Chromaticity(k), value);
         }
-        for k in 0..2 {
-            put(Measurand::UniformChromaticity(k), pairs[1][k]);
+        for (k, value) in chromaticity::uv_prime(xyz).unwrap_or(UNDEFINED).into_iter().enumerate() {
+            put(Measurand::UniformChromaticity(k), value);
         }
         if !self.settings.groups.colour {
             return;
