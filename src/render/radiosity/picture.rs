@@ -36,7 +36,6 @@ impl<'a, F: Fn(u64) + Send + Sync> Picture<'a, F> {
         samples: u64,
         progress: F,
     ) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "at most 16")]
         let rays = samples.clamp(1, MOST_RAYS) as u32;
         Self { gatherer, camera, tristimulus, rays, description, progress, noise: Noise::default() }
     }
