@@ -18,6 +18,12 @@ use crate::spectrum::{Per, Quantity, SpectralUnit};
 /// One of so many samples is spent on the survey.
 const SURVEY: u64 = 16;
 
+/// Samples of a pixel that [`Film::survey`] takes in a picture of `samples` a pixel.
+#[must_use]
+pub fn survey_samples(samples: u64) -> u64 {
+    samples / SURVEY
+}
+
 /// The luminance of a picture and how sure it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Noise {
@@ -74,7 +80,7 @@ pub fn description(bands: &Bands, camera: &Camera) -> Description {
 }
 
 impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
-    /// A picture of `samples` samples a pixel; `progress` is told of pixels as they are done.
+    /// A picture of `samples` samples a pixel; `progress` is told of samples as they are taken, those of a survey as well.
     #[must_use]
     pub fn new(
         scene: &'a Scene,
@@ -144,6 +150,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 row[x / scatter::BLOCK].add(luminance);
             }
         }
+        (self.progress)(width as u64 * samples);
         row
     }
 
@@ -227,7 +234,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 out[place * region.width + column] = sample;
             }
         }
-        (self.progress)(region.width as u64);
+        (self.progress)(region.width as u64 * self.samples);
         noise
     }
 }

@@ -118,7 +118,7 @@ impl<'a> Job<'a> {
             self.instrument,
             samples,
             &self.built.quantities.tristimulus,
-            |pixels| progress.inc(pixels * samples),
+            |samples| progress.inc(samples),
         );
         let survey = |film: &mut Film<_>| {
             if self.adaptive {

@@ -19,6 +19,7 @@ use crate::render::audit::{Audit, bias, energy};
 use crate::render::build::{Built, Kind, build};
 use crate::render::description::{self, Description, Model, Solver};
 use crate::render::estimate::REPLICATES;
+use crate::render::film;
 use crate::render::goniophotometer::Run;
 use crate::render::measure::{Board, Meter, Target};
 use crate::render::radiosity::Summary;
@@ -135,7 +136,10 @@ impl Work {
         let per_replicate = render.meter_samples.div_ceil(REPLICATES as u64);
         let others: u64 = (self.built.instruments.iter())
             .map(|i| match &i.kind {
-                Kind::Camera(c) => u64::from(c.width()) * u64::from(c.height()) * render.samples,
+                Kind::Camera(c) => {
+                    let survey = if render.adaptive { film::survey_samples(render.samples) } else { 0 };
+                    u64::from(c.width()) * u64::from(c.height()) * (render.samples + survey)
+                }
                 Kind::Goniophotometer(_) => render.meter_samples,
                 Kind::Gonioreflectometer(g) => render.meter_samples * g.incident() as u64,
                 Kind::Meter(_) | Kind::Grid { .. } => 0,

@@ -200,9 +200,10 @@ impl Operator {
         if !material.converts() {
             return Self::Factors(reflection.plain[patch.surface][usize::from(back)].clone());
         }
-        let places: Vec<_> = (patch.fine.iter())
-            .filter_map(|node| Some((patch.surface_point(scene, &node.spot)?.uv, node.weight)))
-            .collect();
+        // A matrix takes the square of the bands for each of them: one point of the patch stands for all.
+        let nodes: &[patches::Node] = if material.nature().fluoresces { &patch.coarse[..1] } else { &patch.fine };
+        let places: Vec<_> =
+            (nodes.iter()).filter_map(|node| Some((patch.surface_point(scene, &node.spot)?.uv, node.weight))).collect();
         let whole: f64 = places.iter().map(|p| p.1).sum();
         let (mut value, mut scratch) = (vec![0.0; n], vec![0.0; n]);
         // The mean of what becomes of an irradiance.
