@@ -165,11 +165,13 @@ mod tests {
             "{found:?}"
         );
         assert!((found.level[1] / 3.0 - 1.0).abs() < 5e-4 && found.rms < 5e-4, "{found:?}");
-        let mut picture = field(|r| (r / 100.0).atan().cos().powi(4));
+        let mut picture = field(|r| (r / 200.0).atan().cos().powi(4));
         let found = Vignetting::fit("flat", &picture, Some(centre)).unwrap();
         found.undo(&mut picture);
+        // cos⁴ is (1 + t)⁻² with t = (r/200)² up to 0.15: a cubic leaves 120 t⁴/(4! 2⁷) = 2e-5 at best, least squares several times that at
+        // the corners; means over blocks of 2.5 pixels shift r² by 0.8 px², 2 · 0.8/200² = 4e-5.
         for v in picture.values.chunks_exact(3) {
-            assert!((f64::from(v[2]) / 5.0 - 1.0).abs() < 2e-3, "{v:?}");
+            assert!((f64::from(v[2]) / 5.0 - 1.0).abs() < 4e-4, "{v:?}");
         }
         assert!(Vignetting::fit("flat", &field(|_| 0.0), None).is_err());
     }

@@ -161,7 +161,7 @@ mod tests {
     fn the_lamp_is_found_and_what_is_none_says_why() {
         let outline = Outline::stated([30.0, 30.0, 25.0]);
         let lamp = |x: usize, y: usize| {
-            if (20..23).contains(&x) && (35..37).contains(&y) { 255 } else { u8::from((40, 30) == (x, y)) * 254 + 3 }
+            if (20..23).contains(&x) && (35..37).contains(&y) { 255 } else { u8::from((40, 30) == (x, y)) * 252 + 3 }
         };
         let found = find("a", &photo(lamp), &outline).unwrap();
         // A lone pixel has a sixth of the six's flux: no other lamp.
