@@ -66,9 +66,40 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// A number to the place where its standard uncertainty has its second digit; with six significant digits where that is none, or
+/// below 1e-12 of the number.
+#[must_use]
+pub fn to_uncertainty(value: f64, standard: f64) -> String {
+    if !(standard > 1e-12 * value.abs() && standard.is_finite()) {
+        return significant(value, 6);
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "exponents of doubles are small")]
+    let place = 1 - standard.log10().floor() as i32;
+    match usize::try_from(place) {
+        Ok(decimals) => format!("{value:.decimals$}"),
+        Err(_) => {
+            let unit = 10f64.powi(-place);
+            format!("{:.0}", (value / unit).round() * unit)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digits_end_with_the_uncertainty() {
+        for (value, standard, text) in [
+            (3999.83, 21.3, "4000"),
+            (0.000_502_21, 0.000_374, "0.00050"),
+            (123_456.0, 780.0, "123460"),
+            (82.779, 0.0, "82.7790"),
+            (1.5, f64::NAN, "1.50000"),
+        ] {
+            assert_eq!(to_uncertainty(value, standard), text);
+        }
+    }
 
     #[test]
     fn significant_digits() {

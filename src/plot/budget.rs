@@ -73,7 +73,13 @@ impl BudgetPanel {
             let stated = font::fit(&bar.stated, TICK_TEXT, STATED - 8.0);
             sheet.text((plot.x1 + 10.0, base), &stated, TICK_TEXT, DARK, Align::Start);
         }
-        axis::below(sheet, plot, x, &ticks, "share of the variance [%]");
+        axis::below(
+            sheet,
+            plot,
+            x,
+            &ticks,
+            "share of the variance [%]; beside it the figure ± its standard uncertainty (k = 1)",
+        );
         sheet.frame(plot, 1.0, FRAME);
     }
 }

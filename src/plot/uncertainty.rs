@@ -2,7 +2,7 @@
 
 use super::{BudgetBar, BudgetPanel};
 use crate::uncertainty::{Measurand, Uncertainty};
-use crate::units::significant;
+use crate::units::{significant, to_uncertainty};
 
 /// The budget of the figures named by `figures` (measurand, name, unit), contributions ranked by the largest share that they have in
 /// any of them; those beyond the sixth are joined.
@@ -21,7 +21,8 @@ pub fn budget_panel(title: &str, u: &Uncertainty, figures: &[(Measurand, String,
         let all: Vec<f64> = names.iter().map(|n| share(ranking, n)).collect();
         let (told, rest) = all.split_at(all.len().min(TOLD_APART));
         let others = (!rest.is_empty()).then(|| rest.iter().sum());
-        let text = format!("{} ± {} {unit} (k = 1)", significant(figure.value, 5), significant(stated.standard, 2));
+        let text =
+            format!("{} ± {} {unit}", to_uncertainty(figure.value, stated.standard), significant(stated.standard, 2));
         BudgetBar { name: (*name).clone(), stated: text, shares: told.iter().copied().chain(others).collect() }
     });
     BudgetPanel {

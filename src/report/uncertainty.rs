@@ -10,7 +10,7 @@ use crate::conversion::Conversion;
 use crate::photometry::alpha_opic::RECEPTORS;
 use crate::spectrum::Quantity;
 use crate::uncertainty::{FigureUncertainty, Measurand, Method, Uncertainty};
-use crate::units::significant;
+use crate::units::{significant, to_uncertainty};
 
 /// The dotted paths at which a conversion's JSON has a figure, and its value there over the measured one's.
 fn paths(measurand: Measurand, c: &Conversion) -> Vec<(String, f64)> {
@@ -189,21 +189,6 @@ pub fn budgeted(quantity: Quantity) -> Vec<(Measurand, String, &'static str)> {
     shown(quantity).into_iter().filter(|(m, ..)| BUDGETED.contains(m)).collect()
 }
 
-/// A number to the place where its uncertainty has its second digit.
-fn rounded(value: f64, standard: f64) -> String {
-    if !(standard > 1e-12 * value.abs() && standard.is_finite()) {
-        return significant(value, 6);
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "exponents of doubles are small")]
-    let place = 1 - standard.log10().floor() as i32;
-    if place >= 0 {
-        format!("{value:.*}", usize::try_from(place).unwrap_or(0))
-    } else {
-        let unit = 10f64.powi(-place);
-        format!("{:.0}", (value / unit).round() * unit)
-    }
-}
-
 /// Figures with their uncertainties, and the budget, for people.
 #[must_use]
 pub fn text(u: &Uncertainty, c: &Conversion) -> String {
@@ -222,8 +207,8 @@ pub fn text(u: &Uncertainty, c: &Conversion) -> String {
             continue;
         };
         let standard = if s.standard > 1e-12 * f.value.abs() { significant(s.standard, 2) } else { "0".to_owned() };
-        let [low, high] = s.expanded_95.map(|v| rounded(v, s.standard));
-        let value = rounded(f.value, s.standard);
+        let [low, high] = s.expanded_95.map(|v| to_uncertainty(v, s.standard));
+        let value = to_uncertainty(f.value, s.standard);
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let _ = writeln!(out, "  {label:<28} {value:>14} {standard:>12}   {low} to {high}{unit}");
     }
