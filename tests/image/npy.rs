@@ -40,6 +40,19 @@ fn arrays_are_rows_columns_channels() {
     assert_eq!(image.samples(), [1.5, -2.0]);
 }
 
+/// The bits of numbers in IEEE 754 binary16: 1, −2, the largest (65504), the smallest normal (2⁻¹⁴) and denormal (2⁻²⁴), ∞.
+#[test]
+fn halves_are_read() {
+    let bits = [0x3c00_u16, 0xc000, 0x7bff, 0x0400, 0x0001, 0x7c00];
+    let numbers = [1.0, -2.0, 65504.0, 2.0_f32.powi(-14), 2.0_f32.powi(-24), f32::INFINITY];
+    let little: Vec<u8> = bits.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let image = open(file("<f2", "False", "(2, 3)", &little), Vec::new()).expect("valid");
+    assert_eq!(image.samples(), numbers);
+    let big: Vec<u8> = bits.iter().flat_map(|v| v.to_be_bytes()).collect();
+    let image = open(file(">f2", "True", "(3, 2)", &big), Vec::new()).expect("valid");
+    assert_eq!(image.samples(), [0, 3, 1, 4, 2, 5].map(|i: usize| numbers[i]));
+}
+
 #[test]
 fn arrays_in_fortran_order_have_the_same_indices() {
     // The first index runs fastest: numbers 0 to 23 in the shape (3, 4, 2) are y + 3 (x + 4 c) at [y, x, c].

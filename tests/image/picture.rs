@@ -96,6 +96,46 @@ fn jpeg_and_tiff_are_read() {
     close(load(bytes.get_ref()).0.samples(), [0.215_861, 1.0, 0.003_035_27]);
 }
 
+/// A picture of 2 × 1 pixels, (0, 128, 255) and (255, 0, 128), each component in a strip of its own (TIFF 6.0, tag 284).
+fn planar_tiff() -> Vec<u8> {
+    const STRIPS: u32 = 150;
+    let mut out = b"II*\0\x08\0\0\0".to_vec();
+    let (short, long) = (3_u16, 4_u16);
+    let entries = [
+        (256_u16, long, 1_u32, 2_u32),
+        (257, long, 1, 1),
+        (258, short, 3, STRIPS + 6),
+        (259, short, 1, 1),
+        (262, short, 1, 2),
+        (273, long, 3, STRIPS + 12),
+        (277, short, 1, 3),
+        (278, long, 1, 1),
+        (279, long, 3, STRIPS + 24),
+        (284, short, 1, 2),
+    ];
+    out.extend(u16::try_from(entries.len()).expect("few").to_le_bytes());
+    for (tag, kind, count, value) in entries {
+        out.extend(tag.to_le_bytes().into_iter().chain(kind.to_le_bytes()));
+        out.extend(count.to_le_bytes().into_iter().chain(value.to_le_bytes()));
+    }
+    out.resize(STRIPS as usize, 0);
+    out.extend([0, 255, 128, 0, 255, 128]);
+    out.extend([8_u16; 3].iter().flat_map(|v| v.to_le_bytes()));
+    out.extend([STRIPS, STRIPS + 2, STRIPS + 4, 2, 2, 2].iter().flat_map(|v| v.to_le_bytes()));
+    out
+}
+
+#[test]
+fn a_tiff_may_keep_its_components_apart() {
+    let (image, codes) = load(&planar_tiff());
+    assert_eq!((image.description().width, image.description().height, codes), (2, 1, vec!["I102"]));
+    // By row, then component: 128 is 0.215 861 by IEC 61966-2-1.
+    let want = [0.0, 1.0, 0.215_861, 0.0, 1.0, 0.215_861];
+    for (got, want) in image.samples().iter().zip(want) {
+        assert!((f64::from(*got) - want).abs() < 1e-6, "{got} {want}");
+    }
+}
+
 #[test]
 fn damaged_pictures_are_refused() {
     let whole = png(png::ColorType::Rgb, png::BitDepth::Eight, &[1, 2, 3], |_| ());

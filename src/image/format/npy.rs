@@ -1,11 +1,13 @@
 //! NPY, NumPy's format for one array ("NEP 1", versions 1.0 to 3.0), by hand.
 //!
 //! An image is an array of shape (rows, columns, channels), or (rows, columns) for one channel; its elements are any of the types
-//! that ENVI knows, in either byte order. In C order the channels of a pixel lie beside one another; in Fortran order the rows of
+//! that ENVI knows, or 16-bit floats, in either byte order. In C order the channels of a pixel lie beside one another; in Fortran order the rows of
 //! a column do, and reading a few rows at a time takes many short pieces of the file. An array says nothing of wavelengths, units
 //! or quantities: the caller does. Written are little-endian 32-bit floats in C order.
 
 use std::io::{Read, Seek, SeekFrom, Write};
+
+use exr::prelude::f16;
 
 use super::envi::{ByteOrder, DataType, Envi, Header, Interleave, Options, WriteOptions, open_numbers, write_numbers};
 use crate::finding::{Checked, Finding};
@@ -26,6 +28,8 @@ pub struct Npy<R> {
     numbers: Envi<R>,
     description: Description,
     fortran: bool,
+    /// The numbers are the bits of 16-bit floats.
+    half: bool,
     /// What was read of `numbers`; kept between reads.
     columns: Vec<f32>,
 }
@@ -39,7 +43,7 @@ pub fn open<R: Read + Seek + Send>(
     wavelengths_nm: Vec<f64>,
     options: Options,
 ) -> Result<Checked<Npy<R>>, Error> {
-    let (mut header, fortran) = header(&mut input)?;
+    let (mut header, Layout { fortran, half }) = header(&mut input)?;
     let bands = header.bands;
     if !wavelengths_nm.is_empty() && wavelengths_nm.len() != bands {
         let expected = format!("{bands}, one for each channel of the array");
@@ -53,7 +57,7 @@ pub fn open<R: Read + Seek + Send>(
     if fortran {
         (description.width, description.height) = (description.height, description.width);
     }
-    Ok(Checked { value: Npy { numbers, description, fortran, columns: Vec::new() }, findings })
+    Ok(Checked { value: Npy { numbers, description, fortran, half, columns: Vec::new() }, findings })
 }
 
 impl<R: Read + Seek + Send> Source for Npy<R> {
@@ -63,13 +67,20 @@ impl<R: Read + Seek + Send> Source for Npy<R> {
 
     fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), Error> {
         if !self.fortran {
-            return self.numbers.read(region, channels, out);
+            self.numbers.read(region, channels, out)?;
+            if self.half {
+                floats(out);
+            }
+            return Ok(());
         }
         source::check(&self.description, region, channels, out);
         let Region { width, height, .. } = region;
         self.columns.resize(out.len(), 0.0);
         let turned = Region { x: region.y, y: region.x, width: height, height: width };
         self.numbers.read(turned, channels, &mut self.columns)?;
+        if self.half {
+            floats(&mut self.columns);
+        }
         let count = channels.len();
         for (i, out) in out.chunks_exact_mut(width.max(1)).enumerate() {
             let (y, k) = (i / count, i % count);
@@ -85,6 +96,18 @@ impl<R: Read + Seek + Send> Source for Npy<R> {
     }
 }
 
+/// Makes 16-bit floats of their bits, which were read as integers.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65535")]
+fn floats(samples: &mut [f32]) {
+    samples.iter_mut().for_each(|v| *v = f16::from_bits(*v as u16).to_f32());
+}
+
+/// What a header says that one of ENVI's does not.
+struct Layout {
+    fortran: bool,
+    half: bool,
+}
+
 /// The number of channels of an array.
 ///
 /// # Errors
@@ -93,10 +116,10 @@ pub fn channels(input: &mut (impl Read + Seek)) -> Result<usize, Error> {
     header(input).map(|(header, _)| header.bands)
 }
 
-/// What the header says, as one of ENVI's, and whether the order is Fortran's.
-fn header(input: &mut (impl Read + Seek)) -> Result<(Header, bool), Error> {
+/// What the header says, as one of ENVI's, and the rest.
+fn header(input: &mut (impl Read + Seek)) -> Result<(Header, Layout), Error> {
     let (text, offset) = header_text(input)?;
-    let (data_type, byte_order) = element(field(&text, "descr")?)?;
+    let (data_type, byte_order, half) = element(field(&text, "descr")?)?;
     let fortran = match field(&text, "fortran_order")? {
         "False" => false,
         "True" => true,
@@ -128,7 +151,7 @@ fn header(input: &mut (impl Read + Seek)) -> Result<(Header, bool), Error> {
     };
     header.interleave = if fortran { Interleave::Bsq } else { Interleave::Bip };
     (header.byte_order, header.offset) = (byte_order, offset);
-    Ok((header, fortran))
+    Ok((header, Layout { fortran, half }))
 }
 
 /// The dictionary, and where the numbers begin.
@@ -181,8 +204,8 @@ fn field<'a>(text: &'a str, key: &str) -> Result<&'a str, Error> {
     Ok(rest[..end.ok_or_else(missing)?].trim().trim_matches(['\'', '"']))
 }
 
-/// The type and order that `<f4`, `>u2`, `|u1` … stand for.
-fn element(descr: &str) -> Result<(DataType, ByteOrder), Error> {
+/// The type and order that `<f4`, `>u2`, `|u1` … stand for, and whether they are the bits of 16-bit floats.
+fn element(descr: &str) -> Result<(DataType, ByteOrder, bool), Error> {
     let order = match descr.chars().next() {
         Some('<' | '|') => Some(ByteOrder::Little),
         Some('>') => Some(ByteOrder::Big),
@@ -194,14 +217,15 @@ fn element(descr: &str) -> Result<(DataType, ByteOrder), Error> {
         Some("i4") => Some(DataType::I32),
         Some("f4") => Some(DataType::F32),
         Some("f8") => Some(DataType::F64),
-        Some("u2") => Some(DataType::U16),
+        Some("u2" | "f2") => Some(DataType::U16),
         Some("u4") => Some(DataType::U32),
         Some("i8") => Some(DataType::I64),
         Some("u8") => Some(DataType::U64),
         _ => None,
     };
-    kind.zip(order).ok_or_else(|| {
-        let expected = "one of u1, u2, u4, u8, i2, i4, i8, f4, f8 with its byte order, such as <f4".to_owned();
+    let half = descr.ends_with("f2");
+    kind.zip(order).map(|(kind, order)| (kind, order, half)).ok_or_else(|| {
+        let expected = "one of u1, u2, u4, u8, i2, i4, i8, f2, f4, f8 with its byte order, such as <f4".to_owned();
         ErrorKind::Value { found: format!("`{descr}`"), field: "`descr`".to_owned(), expected }.into()
     })
 }

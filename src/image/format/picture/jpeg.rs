@@ -41,5 +41,5 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, Error> {
     let mut stored = vec![0; width * height * samples];
     decoder.read_image(&mut stored).map_err(failed)?;
     let (space, curve) = srgb();
-    Ok(Decoded { width, height, samples, stored: Stored::U8(stored), space, curve, findings })
+    Ok(Decoded { width, height, samples, planar: false, stored: Stored::U8(stored), space, curve, findings })
 }

@@ -13,14 +13,15 @@
 //! pictures are R = G = B. Coverage (alpha) is not applied (I105). A picture says nothing of its light: white, (1, 1, 1), has the
 //! luminance that the user states, or values are relative to it.
 //!
-//! Pictures are compressed whole and are held as stored, 1, 2 or 4 bytes per sample; more than 2²⁸ pixels are refused.
+//! Pictures are compressed whole and are held as stored, 1, 2 or 4 bytes per sample, beside the compressed file for JPEG alone; more
+//! than 2²⁸ pixels are refused. TIFF may have its components beside one another or one after the other.
 
 mod jpeg;
 mod png;
 mod profile;
 mod tiff;
 
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 
 use rayon::prelude::*;
 
@@ -47,7 +48,7 @@ pub fn is_picture(start: &[u8]) -> bool {
     )
 }
 
-/// Samples as they are stored, those of a pixel beside one another.
+/// Samples as they are stored.
 enum Stored {
     U8(Vec<u8>),
     U16(Vec<u16>),
@@ -78,6 +79,8 @@ struct Decoded {
     height: usize,
     /// Samples per pixel: grey, grey and alpha, RGB, RGB and alpha.
     samples: usize,
+    /// Component after component, instead of the samples of a pixel beside one another.
+    planar: bool,
     stored: Stored,
     space: Space,
     curve: Curve,
@@ -88,7 +91,10 @@ struct Decoded {
 pub struct Picture {
     description: Description,
     stored: Stored,
-    samples: usize,
+    /// Grey is red, green and blue.
+    grey: bool,
+    /// Places from a pixel to the next, and from a component to the next.
+    steps: (usize, usize),
     /// The linear value of each stored integer.
     table: Vec<f32>,
 }
@@ -106,13 +112,18 @@ pub struct Options {
 /// Where it is none of the formats, damaged or cut off, larger than 2²⁸ pixels, or neither grey nor RGB.
 pub fn open<R: Read + Seek>(mut input: R, options: Options) -> Result<Checked<Picture>, Error> {
     input.seek(SeekFrom::Start(0))?;
-    let mut bytes = Vec::new();
-    input.read_to_end(&mut bytes)?;
-    let mut decoded = match bytes.as_slice() {
+    let mut start = Vec::new();
+    input.by_ref().take(4).read_to_end(&mut start)?;
+    input.seek(SeekFrom::Start(0))?;
+    let mut decoded = match start.as_slice() {
         [] => return Err(ErrorKind::Empty.into()),
-        [0x89, b'P', b'N', b'G', ..] => png::decode(&bytes)?,
-        [0xff, 0xd8, ..] => jpeg::decode(&bytes)?,
-        _ => tiff::decode(&bytes)?,
+        [0x89, b'P', b'N', b'G', ..] => png::decode(BufReader::new(input))?,
+        [0xff, 0xd8, ..] => {
+            let mut bytes = Vec::new();
+            input.read_to_end(&mut bytes)?;
+            jpeg::decode(&bytes)?
+        }
+        _ => tiff::decode(BufReader::new(input))?,
     };
     if options.linear {
         decoded.curve = Curve::Of(Encoding::Linear);
@@ -131,7 +142,8 @@ pub fn open<R: Read + Seek>(mut input: R, options: Options) -> Result<Checked<Pi
         Stored::U16(_) => linear(u32::from(u16::MAX)),
         Stored::F32(_) => Vec::new(),
     };
-    let value = Picture { description, stored: decoded.stored, samples: decoded.samples, table };
+    let steps = if decoded.planar { (1, description.pixels()) } else { (decoded.samples, 1) };
+    let value = Picture { description, stored: decoded.stored, grey: decoded.samples < 3, steps, table };
     Ok(Checked { value, findings: decoded.findings })
 }
 
@@ -178,14 +190,13 @@ impl Source for Picture {
         if out.is_empty() {
             return Ok(());
         }
-        let (width, samples) = (self.description.width, self.samples);
+        let (width, (to_pixel, to_component)) = (self.description.width, self.steps);
         let rows = out.par_chunks_exact_mut(channels.len() * region.width).enumerate();
         rows.for_each(|(y, out)| {
             let first = (region.y + y) * width + region.x;
             for (channel, out) in channels.iter().zip(out.chunks_exact_mut(region.width)) {
-                // Grey is red, green and blue.
-                let component = if samples < 3 { 0 } else { *channel };
-                let places = (first..first + region.width).map(|pixel| pixel * samples + component);
+                let component = if self.grey { 0 } else { *channel };
+                let places = (first..first + region.width).map(|pixel| pixel * to_pixel + component * to_component);
                 let out = out.iter_mut().zip(places);
                 match &self.stored {
                     Stored::U8(stored) => out.for_each(|(o, at)| *o = self.table[usize::from(stored[at])]),

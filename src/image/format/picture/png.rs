@@ -1,6 +1,6 @@
 //! PNG: reading with its statements on colour, and writing encoded RGB.
 
-use std::io::{Cursor, Write};
+use std::io::{BufRead, Seek, Write};
 
 use ::png::chunk::ChunkType;
 use ::png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, Info, SrgbRenderingIntent, Transformations};
@@ -12,10 +12,10 @@ use crate::image::description::Meaning;
 use crate::image::error::{Error, ErrorKind};
 use crate::image::source::{Region, Source, rows_at_once};
 
-pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, Error> {
+pub(super) fn decode(input: impl BufRead + Seek) -> Result<Decoded, Error> {
     let failed = |e: DecodingError| damaged("PNG picture", &e);
     let limits = ::png::Limits { bytes: MOST_PIXELS * 8 };
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
+    let mut decoder = Decoder::new_with_limits(input, limits);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(failed)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
@@ -31,7 +31,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, Error> {
     };
     let mut findings = Vec::new();
     let (space, curve) = colours(reader.info(), &mut findings)?;
-    Ok(Decoded { width, height, samples: colour.samples(), stored, space, curve, findings })
+    Ok(Decoded { width, height, samples: colour.samples(), planar: false, stored, space, curve, findings })
 }
 
 /// What the file says of its colours, the strongest statement first.

@@ -1,6 +1,6 @@
 //! TIFF: grey and RGB, integers and floats.
 
-use std::io::Cursor;
+use std::io::{BufRead, Seek};
 
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -13,13 +13,15 @@ use crate::image::error::Error;
 
 /// Value of the tag where each component has a plane of its own.
 const PLANAR: u32 = 2;
+/// Four samples of 32 bits.
+const MOST_BYTES: usize = 16;
 
 #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
-pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, Error> {
+pub(super) fn decode(input: impl BufRead + Seek) -> Result<Decoded, Error> {
     let failed = |e: tiff::TiffError| damaged("TIFF picture", &e);
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = MOST_PIXELS * 4;
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(failed)?.with_limits(limits);
+    limits.decoding_buffer_size = MOST_PIXELS * MOST_BYTES;
+    let mut decoder = Decoder::new(input).map_err(failed)?.with_limits(limits);
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let (width, height) = (width as usize, height as usize);
     check_size(width, height)?;
@@ -31,12 +33,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, Error> {
         ColorType::RGBA(_) => 4,
         other => return Err(not_rgb(format!("a TIFF picture of type {other:?}"))),
     };
-    if samples > 1 && decoder.find_tag_unsigned::<u32>(Tag::PlanarConfiguration).map_err(failed)? == Some(PLANAR) {
-        return Err(not_rgb("a TIFF picture of separate planes".to_owned()));
-    }
+    let planar = decoder.find_tag_unsigned::<u32>(Tag::PlanarConfiguration).map_err(failed)? == Some(PLANAR);
     let profile = decoder.get_tag_u8_vec(Tag::IccProfile).ok();
     let (space, mut curve) = srgb();
-    let stored = match decoder.read_image().map_err(failed)? {
+    // `read_image` would read the first plane only.
+    let mut read = DecodingResult::U8(Vec::new());
+    decoder.read_image_to_buffer(&mut read).map_err(failed)?;
+    let stored = match read {
         DecodingResult::U8(v) => Stored::U8(v),
         DecodingResult::U16(v) => Stored::U16(v),
         DecodingResult::F16(v) => Stored::F32(v.into_iter().map(f32::from).collect()),
@@ -57,5 +60,5 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, Error> {
     if count != width * height * samples {
         return Err(damaged("TIFF picture", &format!("{count} samples")));
     }
-    Ok(Decoded { width, height, samples, stored, space, curve, findings })
+    Ok(Decoded { width, height, samples, planar, stored, space, curve, findings })
 }
