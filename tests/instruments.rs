@@ -183,7 +183,9 @@ fn tm30(light: &Spectrum, kelvin: f64, factor: f64, (low, high): (f64, f64)) -> 
     let plan = SamplePlan::new(Observer::Cie1964, &reflectances, light.grid(), Sampling::Density, &Contract::default());
     let plan = plan.expect("equal steps");
     let references = ReferencePlan::new(light.grid(), SecondRadiation::Its90).expect("embedded");
-    let (planck, daylight) = (references.planck(kelvin), references.daylight(kelvin).expect("in range"));
+    let [mut planck, mut daylight] = [Vec::new(), Vec::new()];
+    references.planck(kelvin, &mut planck);
+    references.daylight(kelvin, &mut daylight).expect("in range");
     let share = ((high - kelvin) / (high - low)).clamp(0.0, 1.0);
     let (p, d) = (share / plan.white(&planck)[1], (1.0 - share) / plan.white(&daylight)[1]);
     let reference: Vec<f64> = planck.iter().zip(&daylight).map(|(a, b)| p * a + d * b).collect();
