@@ -72,6 +72,9 @@ pub struct PathTracer<'a> {
     /// Bands that the path carries no more (it was refracted for one wavelength).
     split: bool,
     hero: usize,
+    /// The one band in which the instrument sees what the path finds, once a fluorescent surface mixed the bands behind it: the
+    /// throughput is that of the light's bands into this one.
+    seen: Option<usize>,
     polarisation: Polarisation,
 }
 
@@ -104,6 +107,7 @@ impl<'a> PathTracer<'a> {
             radiance: vec![0.0; n],
             split: false,
             hero: 0,
+            seen: None,
             polarisation: Polarisation::new(n),
         }
     }
@@ -146,6 +150,7 @@ impl<'a> PathTracer<'a> {
         self.throughput.fill(1.0);
         self.radiance.fill(0.0);
         self.polarisation.clear();
+        self.seen = None;
         self.choose_hero(sampler);
     }
 
@@ -233,8 +238,15 @@ impl<'a> PathTracer<'a> {
         let frame = Frame::of(point.shading, point.tangent);
         let outgoing = frame.local(-edge.ray.direction);
         let u = sampler.four();
-        if material.convert(point.uv, Transport::Radiance, &mut self.throughput, &mut self.value) {
-            self.choose_hero(sampler);
+        if material.converts() {
+            if self.seen.is_none() && material.nature().fluoresces {
+                // One band of the instrument goes on; all bands of the light may come into it.
+                self.split();
+                self.seen = Some(self.hero);
+            }
+            if material.convert(point.uv, Transport::Radiance, &mut self.throughput, &mut self.value) {
+                self.choose_hero(sampler);
+            }
         }
         if material.splits() {
             self.split();
@@ -326,10 +338,12 @@ impl<'a> PathTracer<'a> {
         self.add(weight);
     }
 
-    /// Adds throughput · value · weight.
+    /// Adds throughput · value · weight: band by band, or of all bands of the light to the one that the instrument sees.
     fn add(&mut self, weight: f64) {
-        for ((r, t), v) in self.radiance.iter_mut().zip(&self.throughput).zip(&self.value) {
-            *r += t * v * weight;
+        let products = self.throughput.iter().zip(&self.value).map(|(t, v)| t * v * weight);
+        match self.seen {
+            Some(band) => self.radiance[band] += products.sum::<f64>(),
+            None => self.radiance.iter_mut().zip(products).for_each(|(r, p)| *r += p),
         }
     }
 }

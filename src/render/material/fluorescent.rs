@@ -17,7 +17,8 @@
 //! | `quantum_yield` | 0 to 1 | Q |
 //!
 //! Every direction alike: the matrix is applied once at a vertex ([`Material::convert`]), behind it the surface is a white diffuser.
-//! A path from the sensor is multiplied by the transposed matrix. Light does not dally (no phosphorescence), and dyes do not pass
+//! A path from the sensor goes on for one band that the sensor sees, and is multiplied by the transposed matrix: what the light's bands
+//! put into that one. Light does not dally (no phosphorescence), and dyes do not pass
 //! light on to one another.
 //!
 //! References: R. Donaldson, *Spectrophotometry of Fluorescent Pigments*, Br. J. Appl. Phys. 5 (1954) 210; A. Glassner, *A Model for
