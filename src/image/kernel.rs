@@ -9,7 +9,7 @@
 //! bits on every processor, whatever its instructions.
 //!
 //! The sums of some pixels stay in registers while their samples of all channels pass by. Those lie a row apart, in more places
-//! than a processor foresees by itself, so it is told of what comes next ([`AHEAD`]). Three outputs of 31 bands then take
+//! than a processor foresees by itself, so it is told of what comes next (`AHEAD`). Three outputs of 31 bands then take
 //! little longer than reading alone (`benches/image.rs`, docs/speed.md); without being told they take three times as long.
 //! The instruction set is chosen at run time (crate `pulp`).
 
