@@ -75,7 +75,7 @@ pub struct Reading {
     pub faults: Faults,
     /// The relative standard error that was asked for, and whether it was reached.
     pub target: Option<(f64, bool)>,
-    /// Of a reading without random numbers: how much it differs from that with patches twice as long, in its own unit.
+    /// Of a reading without random numbers: what it is taken to be off by, in its own unit, from the same with patches twice as long.
     pub discretisation: Option<f64>,
     /// The spectrum, where it was asked for.
     pub spectral: Option<Spectral>,

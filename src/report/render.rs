@@ -244,7 +244,7 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
             let (difference, what) = (significant(difference, 2), r.quantity);
             let _ = writeln!(
                 out,
-                "{:width$}  {value} {unit} ({what}; {difference} {unit} from that with patches twice as long)",
+                "{:width$}  {value} {unit} ({what}; within about {difference} {unit}, from patches twice as long)",
                 r.name
             );
         } else {

@@ -1,38 +1,14 @@
 //! Scenes.
 
 use super::Check;
-use crate::luminaire::Luminaire;
-use crate::render::build::{Files, Kind, PictureFile, build};
+use crate::render::build::{Kind, NoFiles, build};
 use crate::render::description::Description;
 use crate::render::estimate::{Figure, REPLICATES};
-use crate::render::format::Object;
 use crate::render::measure::Board;
 use crate::render::spool::Share;
-use crate::spectrum::Spectrum;
 
 /// 4 L a atan(a) with a = X/√(1 + X²), X = 1/2 and L = 1000 cd/m².
 const SQUARE_LX: f64 = 752.274_688_454_107_4;
-
-/// Scenes of words alone.
-struct NoFiles;
-
-impl Files for NoFiles {
-    fn spectrum(&self, file: &str) -> Result<Spectrum, String> {
-        Err(file.to_owned())
-    }
-
-    fn luminaire(&self, file: &str) -> Result<Luminaire, String> {
-        Err(file.to_owned())
-    }
-
-    fn meshes(&self, file: &str) -> Result<Vec<Object>, String> {
-        Err(file.to_owned())
-    }
-
-    fn picture(&self, file: &str) -> Result<PictureFile, String> {
-        Err(file.to_owned())
-    }
-}
 
 /// The first meter's reading, with so many samples.
 fn read(text: &str, samples: u64) -> Option<Figure> {

@@ -339,3 +339,41 @@ fn a_gltf_mesh_casts_its_shadow() {
     std::fs::write(folder.path().join("t.bin"), [0; 35]).expect("written");
     refuses(&folder, &text, "35 bytes of buffer 0; expected 36 of them");
 }
+
+/// A dyed floor under a laser of 440 nm, which it does not reflect: L = K_m/π Q a E_e λ/∫eλ dλ ∫V e dλ, from the photons that the dye takes and gives
+/// back; the light meter beside it reads the laser alone, K_m V E_e. V from the embedded CIE table, e in its nanometres.
+#[test]
+fn a_dye_is_seen_in_the_light_that_it_gives() {
+    use photopic::photometry::luminous::Efficiency;
+    let v = Efficiency::default().weighting();
+    let emission = |nm: f64| if nm < 530.0 { (nm - 500.0) / 30.0 } else { (580.0 - nm) / 50.0 };
+    let (mut photons, mut luminous) = (0.0, 0.0);
+    for nm in (501..580).map(f64::from) {
+        photons += emission(nm) * nm;
+        luminous += emission(nm) * v.at(nm);
+    }
+    // 100 lx of the laser.
+    let expected = 100.0 / v.at(440.0) * 0.9 * 0.8 * 440.0 / photons * luminous / std::f64::consts::PI;
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[render]
+wavelength_step_nm = 1
+[[material]]
+name = "dyed"
+dye = { reflectance = 0, absorption = 0.8, emission = [[500, 0], [530, 1], [580, 0]], quantum_yield = 0.9 }
+[[shape]]
+material = "dyed"
+rectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }
+[[light]]
+distant = { from = [0, 0, 1], irradiance = "100 lx" }
+spectrum = "line:440nm"
+[[sensor]]
+name = "dye"
+luminance = { at = [0.5, 0, 1], look_at = [0, 0, 0], acceptance = "1 deg" }
+"#;
+    let (value, standard_error) = readings(&folder, text, "65536")[0];
+    assert!(
+        (value - expected).abs() <= 3.0 * standard_error && standard_error < 0.02 * value,
+        "{value} ± {standard_error}, expected {expected}"
+    );
+}

@@ -1,13 +1,10 @@
 //! What a trade of a scene promises: error curves with the slope of theory, and recommendations that hold with other seeds.
 
-use photopic::luminaire::Luminaire;
-use photopic::render::build::{Built, Files, Kind, PictureFile, build};
+use photopic::render::build::{Built, Kind, NoFiles, build};
 use photopic::render::description::Description;
 use photopic::render::estimate::REPLICATES;
-use photopic::render::format::Object;
 use photopic::render::measure::{Board, Settings};
 use photopic::render::spool::Share;
-use photopic::spectrum::Spectrum;
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -35,27 +32,6 @@ illuminance = { at = [0, 0, -0.5] }
 name = "aside"
 illuminance = { at = [0.3, 0.1, 0], normal = [1, 0, 0] }
 "#;
-
-/// A scene without files.
-struct NoFiles;
-
-impl Files for NoFiles {
-    fn spectrum(&self, file: &str) -> Result<Spectrum, String> {
-        Err(file.to_owned())
-    }
-
-    fn luminaire(&self, file: &str) -> Result<Luminaire, String> {
-        Err(file.to_owned())
-    }
-
-    fn meshes(&self, file: &str) -> Result<Vec<Object>, String> {
-        Err(file.to_owned())
-    }
-
-    fn picture(&self, file: &str) -> Result<PictureFile, String> {
-        Err(file.to_owned())
-    }
-}
 
 /// The readings of a built scene's points with a seed.
 fn read(built: &Built, samples: u64, seed: u64) -> Vec<f64> {

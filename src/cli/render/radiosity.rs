@@ -8,7 +8,7 @@ use crate::render::estimate::{Estimate, Faults, Replicate};
 use crate::render::measure::Meter;
 use crate::render::radiosity::gather::Gatherer;
 use crate::render::radiosity::{self, Settings};
-use crate::render::reading;
+use crate::render::reading::{self, Reading};
 
 impl Work {
     /// Solves the scene and reads its instruments.
@@ -58,6 +58,12 @@ impl Work {
             done.readings.push(r);
         }
         progress.finish_and_clear();
+        // What one reading changes by may be small by chance; what any changes by is what all are taken to be off by.
+        let share = |r: &Reading| r.discretisation.filter(|_| r.figure.value > 0.0).map(|d| d / r.figure.value);
+        let largest = done.readings.iter().filter_map(share).fold(0.0, f64::max);
+        for r in &mut done.readings {
+            r.discretisation = r.discretisation.map(|own| own.max(largest * r.figure.value));
+        }
         Ok(done)
     }
 }

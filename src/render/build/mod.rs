@@ -63,6 +63,32 @@ pub trait Files {
     fn picture(&self, file: &str) -> Result<PictureFile, String>;
 }
 
+/// Of a scene without files: each that it names is refused by its name.
+#[derive(Debug, Clone, Copy)]
+pub struct NoFiles;
+
+impl Files for NoFiles {
+    fn spectrum(&self, file: &str) -> Result<Spectrum, String> {
+        Err(no_file(file))
+    }
+
+    fn luminaire(&self, file: &str) -> Result<Luminaire, String> {
+        Err(no_file(file))
+    }
+
+    fn meshes(&self, file: &str) -> Result<Vec<Object>, String> {
+        Err(no_file(file))
+    }
+
+    fn picture(&self, file: &str) -> Result<PictureFile, String> {
+        Err(no_file(file))
+    }
+}
+
+fn no_file(file: &str) -> String {
+    format!("{file}: found a file; expected a scene without files")
+}
+
 /// A scene that is ready to be rendered.
 #[derive(Debug)]
 pub struct Built {
