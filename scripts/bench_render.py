@@ -72,12 +72,12 @@ def shape(s):
     return "\n".join(out)
 
 
-def scene(name, step_nm, adaptive):
+def scene(name, step_nm, adaptive, solver):
     """The text of a scene; `prism+disp` is the prism with dispersion."""
     base = name.removesuffix("+disp")
     d = json.loads((SHARED / "scenes" / f"{base}.json").read_text())
     camera, film = d["camera"], d["film"]
-    parts = [f"[render]\nmax_edges = {d['integrator']['max_path_edges']}\nwavelength_step_nm = {step_nm}\nadaptive = {str(adaptive).lower()}"]
+    parts = [f"[render]\nsolver = \"{solver}\"\nmax_edges = {d['integrator']['max_path_edges']}\nwavelength_step_nm = {step_nm}\nadaptive = {str(adaptive).lower()}"]
     parts += [material(k, m, d["shapes"], name != base) for k, m in d["materials"].items()]
     parts += [shape(s) for s in d["shapes"]]
     if d["env"]:
@@ -98,10 +98,10 @@ def errors(xyz, name):
     return error.mean((0, 1)), xyz.mean((0, 1)) / mean - 1
 
 
-def ours(binary, name, samples, step_nm, adaptive):
+def ours(binary, name, samples, step_nm, adaptive, solver):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
-        (path / "scene.toml").write_text(scene(name, step_nm, adaptive))
+        (path / "scene.toml").write_text(scene(name, step_nm, adaptive, solver))
         command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "-o", "out.txt"]
         start = time.perf_counter()
         subprocess.run(command, cwd=folder, check=True)
@@ -142,22 +142,24 @@ def main():
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--step-nm", type=float, default=10.0)
     parser.add_argument("--even", action="store_true", help="photopic gives every pixel as many samples")
+    parser.add_argument("--solvers", default="path", help="photopic's, such as path,bidirectional")
     parser.add_argument("--mitsuba", action="store_true")
     arguments = parser.parse_args()
     if not SHARED.is_dir():
         print("skipped: ../shared/render is not here")
         return 2
     binary = str(Path(arguments.binary).resolve())
-    print(f"{'scene':12} {'program':10} {'s':>8} {'relMSE Y':>10} {'s to 1e-3':>10} {'mean Y off':>11}")
+    print(f"{'scene':12} {'program':13} {'s':>8} {'relMSE Y':>10} {'s to 1e-3':>10} {'mean Y off':>11}")
     for name in arguments.scenes.split(","):
-        runs = [("photopic", lambda name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even))]
+        run = lambda solver, name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even, solver)
+        runs = [(solver, lambda solver=solver, run=run: run(solver)) for solver in arguments.solvers.split(",")]
         if arguments.mitsuba:
             runs.append(("mitsuba", lambda name=name: mitsuba(name, arguments.samples)))
         for program, run in runs:
             seconds, xyz = run()
             error, mean = errors(xyz, name)
             to = seconds * error[1] / 1e-3
-            print(f"{name:12} {program:10} {seconds:8.2f} {error[1]:10.5f} {to:10.2f} {100 * mean[1]:10.3f} %", flush=True)
+            print(f"{name:12} {program:13} {seconds:8.2f} {error[1]:10.5f} {to:10.2f} {100 * mean[1]:10.3f} %", flush=True)
     return 0
 
 

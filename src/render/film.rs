@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use super::bands::Bands;
 use super::estimate::{Faults, stream};
 use super::integrator::path::PathTracer;
+use super::light::shares::Shares;
 use super::measure::Settings;
+use super::packets::{PacketPicture, Task};
 use super::sampler::Sampler;
 use super::scatter::{self, Scatter, Scattered};
 use super::scene::Scene;
@@ -32,13 +34,17 @@ pub struct Noise {
     /// Σ of the luminances.
     pub luminance: f64,
     /// Σ of the variances of the pixels' means, estimated from the scatter of their samples. Samples of a pixel are spread
-    /// evenly, which this estimate does not know: it errs to the safe side.
+    /// evenly, which this estimate does not know: it errs to the safe side. The first pixel's has the covariances of all pixels that
+    /// packets are seen in, so that the sum over a whole picture is n² times the variance of its mean.
     pub variance: f64,
     /// Samples left out of the means.
     pub faults: Faults,
 }
 
 /// A picture that is rendered when it is read.
+///
+/// Where packets help ([`Settings::packets`]), they are sent before anything is read, as many as samples of all pixels, and the whole picture's
+/// part of them is kept in memory.
 ///
 /// Its channels are the bands of the scene (spectral radiance), then X, Y, Z in cd/m² of the observer whose weights it was given.
 /// The value of a pixel is the mean over the pixel's square (box filter). A region that is read twice is rendered twice, to the same
@@ -58,6 +64,10 @@ pub struct Film<'a, F> {
     noise: Noise,
     /// Samples of each pixel, row by row, where they are not all the same.
     shares: Option<Vec<u32>>,
+    /// Where packets start, if they help.
+    lights: Option<Shares>,
+    /// What they found, once they were sent.
+    packets: Option<PacketPicture>,
 }
 
 /// What a camera's picture holds: the bands, then X, Y, Z.
@@ -103,6 +113,8 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             progress,
             noise: Noise::default(),
             shares: None,
+            lights: settings.packets.then(|| Shares::new(scene.lights(), scene.bands().len())),
+            packets: None,
         }
     }
 
@@ -112,6 +124,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     /// The samples that it took are thrown away, so that no pixel's number of samples depends on their values, which would be a bias.
     /// With fewer than sixteen samples nothing is done.
     pub fn survey(&mut self) {
+        self.send();
         if self.samples < SURVEY {
             return;
         }
@@ -125,6 +138,21 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         self.shares = Some(scatter.samples(self.samples));
     }
 
+    /// Sends the packets that help, if they were not sent yet.
+    fn send(&mut self) {
+        let Some(shares) = self.lights.as_ref().filter(|_| self.packets.is_none()) else { return };
+        let task = Task {
+            scene: self.scene,
+            camera: self.camera,
+            settings: self.settings,
+            shares,
+            instrument: self.instrument,
+            per_pixel: self.samples,
+            tristimulus: self.tristimulus,
+        };
+        self.packets = Some(PacketPicture::of(&task, &self.progress));
+    }
+
     /// Luminance and noise of what was rendered so far.
     #[must_use]
     pub fn noise(&self) -> Noise {
@@ -132,7 +160,11 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     }
 
     fn tracer(&self) -> PathTracer<'_> {
-        PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes)
+        let tracer = PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes);
+        match &self.lights {
+            Some(shares) => tracer.beside(shares),
+            None => tracer,
+        }
     }
 
     /// Luminances of some samples of each pixel of a row, by block.
@@ -143,11 +175,13 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             // Streams of another instrument: the picture's own numbers stay unknown.
             let pixel = stream(self.instrument + u64::from(u32::MAX), y * width + x);
             let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
+            let packets = self.packets.as_ref();
+            let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
             for index in 0..samples {
                 sampler.start(index);
                 let sample = self.sample(tracer, x, y, &mut sampler);
                 let luminance = sample.map_or(0.0, |s| s.iter().zip(self.tristimulus).map(|(s, t)| s * t[1]).sum());
-                row[x / scatter::BLOCK].add(luminance);
+                row[x / scatter::BLOCK].add(luminance, known);
             }
         }
         (self.progress)(width as u64 * samples);
@@ -165,7 +199,8 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let [u, v, lens @ ..] = sampler.four();
         #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
         let ray = self.camera.ray(x as f64 + u, y as f64 + v, lens)?;
-        Some(tracer.radiance(ray, sampler))
+        let picture_sr = self.camera.pixels() / self.camera.pixels_per_solid_angle(ray.direction);
+        Some(tracer.picture_radiance(ray, picture_sr, sampler))
     }
 
     /// Renders one pixel: means per band into `bands`; what it adds to the noise.
@@ -198,21 +233,34 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         if count > 0.0 {
             bands.iter_mut().for_each(|b| *b /= count);
         }
-        let variance = if count > 1.0 { squares / (count - 1.0) / count } else { 0.0 };
+        let mut variance = if count > 1.0 { squares / (count - 1.0) / count } else { 0.0 };
+        if let Some(packets) = &self.packets {
+            let pixel = y * self.description.width + x;
+            packets.add_to(pixel, bands);
+            let (luminance, own) = packets.luminance(pixel, self.tristimulus);
+            mean += luminance;
+            variance += own;
+            if (x, y) == (0, 0) {
+                faults.append(packets.faults());
+                variance += packets.covariance(self.tristimulus);
+            }
+        }
         Noise { pixels: 1, luminance: mean, variance, faults }
     }
 
     /// Renders whole rows: the noise and the samples of all channels, one behind the other, of each. What [`Film::noise`] says stays.
     #[must_use]
-    pub fn rows(&self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
-        let channels: Vec<usize> = (0..self.description.channels.len()).collect();
+    pub fn rows(&mut self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
+        self.send();
+        let this = &*self;
+        let channels: Vec<usize> = (0..this.description.channels.len()).collect();
         rows.par_iter()
             .map_init(
-                || self.tracer(),
+                || this.tracer(),
                 |tracer, &y| {
-                    let region = Region::rows(&self.description, y, 1);
+                    let region = Region::rows(&this.description, y, 1);
                     let mut samples = vec![0.0; region.width * channels.len()];
-                    let noise = self.row(tracer, region, y, &channels, &mut samples);
+                    let noise = this.row(tracer, region, y, &channels, &mut samples);
                     (noise, samples)
                 },
             )
@@ -267,10 +315,12 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
         if out.is_empty() {
             return Ok(());
         }
+        self.send();
+        let this = &*self;
         let rows: Vec<Noise> = out
             .par_chunks_mut(region.width * channels.len())
             .enumerate()
-            .map_init(|| self.tracer(), |tracer, (row, out)| self.row(tracer, region, region.y + row, channels, out))
+            .map_init(|| this.tracer(), |tracer, (row, out)| this.row(tracer, region, region.y + row, channels, out))
             .collect();
         rows.iter().for_each(|row| self.noise.append(row));
         Ok(())

@@ -44,6 +44,9 @@ pub struct Settings {
     pub limits: Limits,
     /// Running sums, up to 1, of the probabilities with which a band is kept where a path must be split, one per band.
     pub heroes: Vec<f64>,
+    /// Whether packets from the lights help paths from the camera in making pictures
+    /// ([`bidirectional`](super::integrator::bidirectional)).
+    pub packets: bool,
 }
 
 impl Settings {
@@ -52,7 +55,7 @@ impl Settings {
     pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
         let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
-        Self { seed, limits, heroes }
+        Self { seed, limits, heroes, packets: false }
     }
 }
 

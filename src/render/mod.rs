@@ -51,6 +51,7 @@ pub mod light;
 pub mod material;
 pub mod measure;
 pub mod mesh;
+mod packets;
 pub mod placed;
 pub mod radiosity;
 pub mod ray;

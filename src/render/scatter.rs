@@ -4,6 +4,8 @@
 //! n ∝ σ/(L + L̄/100)        σ, L: of the block of pixels and its neighbours
 //! ```
 //!
+//! L counts what is known of the pixels beside the samples, σ does not.
+//!
 //! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given Σ n (Lagrange); the hundredth of the picture's
 //! mean luminance keeps dark pixels from taking all.
 
@@ -18,13 +20,14 @@ pub(super) struct Scattered {
     count: f64,
     sum: f64,
     squares: f64,
+    known: f64,
 }
 
 impl Scattered {
-    /// A luminance; one that is not finite is none.
-    pub(super) fn add(&mut self, luminance: f64) {
+    /// A sample's luminance, and what of the pixel's is known beside it; one that is not finite is none.
+    pub(super) fn add(&mut self, luminance: f64, known: f64) {
         if luminance.is_finite() {
-            self.append(1.0, Self { count: 1.0, sum: luminance, squares: luminance * luminance });
+            self.append(1.0, Self { count: 1.0, sum: luminance, squares: luminance * luminance, known });
         }
     }
 
@@ -32,6 +35,7 @@ impl Scattered {
         self.count += weight * other.count;
         self.sum += weight * other.sum;
         self.squares += weight * other.squares;
+        self.known += weight * other.known;
     }
 }
 
@@ -62,7 +66,7 @@ impl Scatter {
         let rows = self.height.div_ceil(BLOCK);
         let mut all = Scattered::default();
         self.blocks.iter().for_each(|block| all.append(1.0, *block));
-        let dark = 0.01 * all.sum / all.count.max(1.0);
+        let dark = 0.01 * (all.sum + all.known) / all.count.max(1.0);
         let deserved = |bx: usize, by: usize| -> f64 {
             let mut near = Scattered::default();
             for y in by.saturating_sub(1)..(by + 2).min(rows) {
@@ -73,7 +77,8 @@ impl Scatter {
             }
             let average = near.sum / near.count;
             let deviation = (near.squares / near.count - average * average).max(0.0).sqrt();
-            if average + dark > 0.0 { deviation / (average + dark) } else { 0.0 }
+            let luminance = average + near.known / near.count + dark;
+            if luminance > 0.0 { deviation / luminance } else { 0.0 }
         };
         let blocks: Vec<f64> = (0..rows * columns).map(|b| deserved(b % columns, b / columns)).collect();
         let average = blocks.iter().sum::<f64>() / blocks.len() as f64;
@@ -104,9 +109,9 @@ mod tests {
         for y in 0..height {
             let mut row = vec![Scattered::default(); width.div_ceil(BLOCK)];
             for x in 0..width {
-                row[x / BLOCK].add(1.0 - sigma(x));
-                row[x / BLOCK].add(1.0 + sigma(x));
-                row[x / BLOCK].add(f64::NAN);
+                row[x / BLOCK].add(1.0 - sigma(x), 0.0);
+                row[x / BLOCK].add(1.0 + sigma(x), 0.0);
+                row[x / BLOCK].add(f64::NAN, 0.0);
             }
             scatter.add(y, &row);
         }
@@ -121,12 +126,29 @@ mod tests {
         assert!((mean / 800.0 - 1.0).abs() < 0.05, "{mean}");
     }
 
+    /// The same noise matters a third as much where three times as much light is known to be.
+    #[test]
+    fn what_is_known_counts_as_light() {
+        let mut scatter = Scatter::new(96, 4);
+        let mut row = vec![Scattered::default(); 24];
+        for (x, block) in row.iter_mut().enumerate() {
+            for luminance in [0.5, 1.5] {
+                block.add(luminance, if x < 12 { 0.0 } else { 2.0 });
+            }
+        }
+        scatter.add(0, &row);
+        let samples = scatter.samples(1 << 20);
+        let share = |x: usize| (f64::from(samples[x]) / f64::from(1 << 20) - LEAST) / (1.0 - LEAST);
+        // The picture's mean is 2, a hundredth of which is added to both.
+        assert!((share(4) / share(90) - 3.02 / 1.02).abs() < 1e-4, "{} {}", share(4), share(90));
+    }
+
     #[test]
     fn a_picture_without_light_or_noise_is_sampled_evenly() {
         for luminance in [0.0, 3.0] {
             let mut scatter = Scatter::new(9, 5);
             let mut row = vec![Scattered::default(); 3];
-            row.iter_mut().for_each(|block| block.add(luminance));
+            row.iter_mut().for_each(|block| block.add(luminance, 0.0));
             (0..5).for_each(|y| scatter.add(y, &row));
             assert!(scatter.samples(7).iter().all(|&n| n == 7));
         }

@@ -22,6 +22,9 @@ pub fn model(built: &Built) -> Value {
     let (solver, light) = match limits.follow {
         _ if built.radiosity.is_some() => ("radiosity", "all light, between diffuse patches, without random numbers"),
         _ if !limits.shadows => ("preview", "direct light without shadows; no measurement"),
+        Follow::All if built.settings.packets => {
+            ("bidirectional", "all light, direct and reflected; pictures by paths from the camera and from the lights")
+        }
         Follow::All => ("path", "all light, direct and reflected"),
         Follow::Specular => ("whitted", "direct light and its reflections in mirrors and glass"),
         Follow::Nothing => ("direct", "direct light alone"),
@@ -32,6 +35,13 @@ pub fn model(built: &Built) -> Value {
     }
     if limits.follow != Follow::All {
         left_out.push("light that was reflected diffusely before");
+    }
+    if built.analysis.caustics_missed && limits.follow == Follow::All {
+        left_out.push(if built.settings.packets {
+            "light of one direction that polished surfaces throw on meters"
+        } else {
+            "light of one direction that polished surfaces throw on others"
+        });
     }
     if limits.max_edges.is_some() {
         left_out.push("paths longer than max_edges");
@@ -62,6 +72,11 @@ pub fn model(built: &Built) -> Value {
             "followed": analysis.polarisation,
             "because": analysis.polarisation_because,
             "polished_surfaces": analysis.polished_surfaces,
+        },
+        "caustics": {
+            "sought_from_the_lights": built.settings.packets,
+            "advised": analysis.caustics,
+            "because": analysis.caustics_because,
         },
         "materials": {
             "dispersive": analysis.dispersive,
@@ -415,6 +430,9 @@ pub fn contents_text(built: &Built) -> String {
     let _ = writeln!(out, "{} wavelengths{error}: {paths}", bands.len());
     let followed = if analysis.polarisation { "followed" } else { "left out" };
     let _ = writeln!(out, "polarisation is {followed}: {}", analysis.polarisation_because);
+    if analysis.caustics && !built.settings.packets && built.settings.limits.follow == Follow::All {
+        let _ = writeln!(out, "pictures gain by `solver = \"bidirectional\"`: {}", analysis.caustics_because);
+    }
     if !analysis.global {
         let _ = writeln!(out, "nothing scatters: there is only the light of the lamps");
     }

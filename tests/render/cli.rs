@@ -269,9 +269,15 @@ fn all_kinds_of_material_are_built() {
 /// One run, a run that goes on from a torn state, and three shares that are joined: the same readings and the same picture, bit for bit.
 #[test]
 fn breaks_and_shares_change_no_bit() {
+    for solver in ["path", "bidirectional"] {
+        breaks_and_shares(solver);
+    }
+}
+
+fn breaks_and_shares(solver: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let text = format!(
-        "{LAMP}{}",
+        "[render]\nsolver = \"{solver}\"\n{LAMP}{}",
         r#"
 [[material]]
 name = "white"

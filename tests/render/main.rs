@@ -5,6 +5,7 @@ mod common;
 
 mod analytic;
 mod audits;
+mod bidirectional;
 mod cli;
 mod files;
 mod honest;

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::cli::{json, photopic, scene};
 
-fn shipped() -> Vec<PathBuf> {
+pub(crate) fn shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
     let entries = std::fs::read_dir(folder).expect("the scenes").map(|e| e.expect("an entry").path());
     let mut scenes: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();

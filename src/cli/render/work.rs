@@ -138,7 +138,8 @@ impl Work {
             .map(|i| match &i.kind {
                 Kind::Camera(c) => {
                     let survey = if render.adaptive { film::survey_samples(render.samples) } else { 0 };
-                    u64::from(c.width()) * u64::from(c.height()) * (render.samples + survey)
+                    let packets = if self.built.settings.packets { render.samples } else { 0 };
+                    u64::from(c.width()) * u64::from(c.height()) * (render.samples + survey + packets)
                 }
                 Kind::Goniophotometer(_) => render.meter_samples,
                 Kind::Gonioreflectometer(g) => render.meter_samples * g.incident() as u64,

@@ -30,6 +30,13 @@ pub struct Analysis {
     pub anisotropic: Vec<String>,
     /// Whether anything scatters: otherwise the light of the lamps is all there is.
     pub global: bool,
+    /// Whether light is gathered or thrown by polished surfaces onto others, which packets from the lights find and paths from the camera do
+    /// not, or hardly.
+    pub caustics: bool,
+    /// Why, or why not.
+    pub caustics_because: &'static str,
+    /// Whether paths from the camera or a meter miss some of that altogether, because its light comes from one direction.
+    pub caustics_missed: bool,
     /// Lights of no flux, which were left out.
     pub dark_lights: Vec<String>,
     /// Lights that reach a point from one direction, in closed form: no direction has to be drawn.
@@ -70,8 +77,21 @@ impl Builder<'_> {
             (_, _, 1, true) => (false, "from one flat polished surface no light comes to another"),
             _ => (true, "light can go from one polished surface to another"),
         };
+        let refracts = parts.iter().any(|p| p.material.has_delta() && p.material.is_transmissive());
+        let one_direction = lights.iter().any(|(_, light)| light.is_one_direction());
+        let scatters = parts.iter().any(|p| !p.material.is_delta() && !is_black(p.material.as_ref(), bands));
+        let (caustics, caustics_because) = match (polished_surfaces, scatters, one_direction, refracts) {
+            (0, ..) => (false, "nothing is polished"),
+            (_, false, ..) => (false, "nothing scatters what polished surfaces throw on it"),
+            (_, _, true, _) => (true, "paths from the camera never meet a light of one direction in polished surfaces"),
+            (_, _, _, true) => (true, "paths from the camera meet lights through glass only by chance"),
+            _ => (true, "paths from the camera meet lights in mirrors only by chance"),
+        };
         Analysis {
             full,
+            caustics,
+            caustics_because,
+            caustics_missed: caustics && one_direction,
             polarisation,
             polarisation_because,
             polished_surfaces,

@@ -199,7 +199,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let render = &description.render;
     let follow = match render.solver {
         // Of radiosity the audits follow all light as well.
-        Solver::Path | Solver::Radiosity => Follow::All,
+        Solver::Path | Solver::Bidirectional | Solver::Radiosity => Follow::All,
         Solver::Whitted => Follow::Specular,
         Solver::Direct | Solver::Preview => Follow::Nothing,
     };
@@ -209,7 +209,8 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;
-    let settings = Settings::new(render.seed, limits, scene.bands().len());
+    let packets = render.solver == Solver::Bidirectional;
+    let settings = Settings { packets, ..Settings::new(render.seed, limits, scene.bands().len()) };
     Ok(Built {
         scene,
         instruments,

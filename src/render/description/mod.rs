@@ -117,6 +117,8 @@ impl Default for Render {
 pub enum Solver {
     /// All of it.
     Path,
+    /// All of it, and pictures from the lights' side as well: for what glass and mirrors throw on a wall.
+    Bidirectional,
     /// Direct light and its reflections in mirrors and glass.
     Whitted,
     /// All of it, between diffuse surfaces, without random numbers.
@@ -133,6 +135,7 @@ impl Solver {
     pub fn word(self) -> &'static str {
         match self {
             Self::Path => "path",
+            Self::Bidirectional => "bidirectional",
             Self::Whitted => "whitted",
             Self::Direct => "direct",
             Self::Radiosity => "radiosity",

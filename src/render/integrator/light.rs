@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::frame::Frame;
 use super::polarisation::Polarisation;
 use crate::math::sampling;
+use crate::render::light::shares::Shares;
 use crate::render::material::Transport;
 use crate::render::ray::Ray;
 use crate::render::sampler::Sampler;
@@ -42,8 +43,7 @@ pub trait Visitor {
 pub struct LightTracer<'a> {
     scene: &'a Scene,
     heroes: &'a [f64],
-    /// Running sums, up to 1, of the probabilities of the lights: their shares in the flux.
-    lights: Vec<f64>,
+    lights: Shares,
     flux: Vec<f64>,
     before: Vec<f64>,
     weights: Vec<f64>,
@@ -55,21 +55,11 @@ impl<'a> LightTracer<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, heroes: &'a [f64]) -> Self {
         let n = scene.bands().len();
-        let mut flux = vec![0.0; n];
-        let mut sum = 0.0;
-        let mut lights: Vec<f64> = (scene.lights().iter())
-            .map(|light| {
-                light.flux(&mut flux);
-                sum += flux.iter().sum::<f64>();
-                sum
-            })
-            .collect();
-        lights.iter_mut().for_each(|l| *l /= sum);
         Self {
             scene,
             heroes,
-            lights,
-            flux,
+            lights: Shares::new(scene.lights(), n),
+            flux: vec![0.0; n],
             before: vec![0.0; n],
             weights: vec![0.0; n],
             polarisation: Polarisation::new(n),
@@ -80,14 +70,9 @@ impl<'a> LightTracer<'a> {
     pub fn packet(&mut self, sampler: &mut Sampler, visitor: &mut impl Visitor) {
         let [choice, u0, u1, hero] = sampler.four();
         let [u2, u3, u4, _] = sampler.four();
-        let index = self.lights.partition_point(|&s| s <= choice);
-        let Some(light) = self.scene.lights().get(index) else { return };
-        let probability = self.lights[index] - if index == 0 { 0.0 } else { self.lights[index - 1] };
+        let Some((index, probability)) = self.lights.draw(choice) else { return };
+        let light = &self.scene.lights()[index];
         let Some(ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
-        // Where nothing shines there are no shares.
-        if probability.is_nan() {
-            return;
-        }
         self.flux.iter_mut().for_each(|f| *f /= probability);
         visitor.starts(index);
         self.fly(ray, hero, sampler, visitor);

@@ -6,6 +6,7 @@
 //!
 //! Reference: J. T. Kajiya, *The Rendering Equation*, SIGGRAPH 1986.
 
+pub mod bidirectional;
 pub mod frame;
 pub mod light;
 pub mod path;

@@ -17,6 +17,7 @@ use glam::DVec3;
 use super::frame::Frame;
 use super::polarisation::Polarisation;
 use crate::render::light::choice::Choice;
+use crate::render::light::shares::Shares;
 use crate::render::material::{Material, Transport};
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
@@ -76,6 +77,11 @@ pub struct PathTracer<'a> {
     /// throughput is that of the light's bands into this one.
     seen: Option<usize>,
     polarisation: Polarisation,
+    /// Where packets of flux compete ([`super::bidirectional`]): the probabilities with which they start from the lights.
+    packets: Option<&'a Shares>,
+    /// The solid angle that the picture would have if all of its pixels were as large as the one that the path starts from, sr; 0 where no
+    /// packet competes.
+    picture_sr: f64,
 }
 
 /// Where the path stands before its next edge.
@@ -86,6 +92,8 @@ struct Edge {
     pdf: Option<f64>,
     /// Where it starts, for the lights' densities.
     from: DVec3,
+    /// The density with which packets find the path up to here, over that of the path's own way: without what draws them at the light.
+    rival: f64,
 }
 
 impl<'a> PathTracer<'a> {
@@ -109,13 +117,28 @@ impl<'a> PathTracer<'a> {
             hero: 0,
             seen: None,
             polarisation: Polarisation::new(n),
+            packets: None,
+            picture_sr: 0.0,
         }
+    }
+
+    /// The same, for pictures to which packets of flux add what they find: see [`super::bidirectional`].
+    #[must_use]
+    pub fn beside(self, packets: &'a Shares) -> Self {
+        Self { packets: Some(packets), ..self }
     }
 
     /// One sample of the radiance along a ray, per band.
     pub fn radiance(&mut self, ray: Ray, sampler: &mut Sampler) -> &[f64] {
+        self.picture_radiance(ray, 0.0, sampler)
+    }
+
+    /// The same along the ray of a pixel: the part of it that packets leave to it, where there are as many of them as samples of all
+    /// pixels. `picture_sr` is the solid angle that the picture would have if all of its pixels were as large as this one.
+    pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
-        self.follow(Edge { ray, pdf: None, from: ray.origin }, sampler);
+        self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
+        self.follow(Edge { ray, pdf: None, from: ray.origin, rival: 0.0 }, sampler);
         &self.radiance
     }
 
@@ -131,7 +154,7 @@ impl<'a> PathTracer<'a> {
                 [u0, u1, u2, u3],
                 |local, value| {
                     value.fill(response.weight(local));
-                    response.pdf(local)
+                    [response.pdf(local), 0.0]
                 },
                 &frame,
             );
@@ -142,7 +165,8 @@ impl<'a> PathTracer<'a> {
         let direction = frame.world(local);
         let ray = Ray { origin: point.origin_towards(direction), direction };
         let pdf = response.seeks_lights().then(|| response.pdf(local));
-        self.follow(Edge { ray, pdf, from: point.position }, sampler);
+        self.picture_sr = 0.0;
+        self.follow(Edge { ray, pdf, from: point.position, rival: 0.0 }, sampler);
         &self.radiance
     }
 
@@ -198,11 +222,11 @@ impl<'a> PathTracer<'a> {
         for (index, light) in self.scene.lights().iter().enumerate() {
             self.value.fill(0.0);
             light.add_radiance(edge.ray.direction, &mut self.value);
-            let weight = edge.pdf.map_or(1.0, |pdf| {
-                let other = self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction);
-                power_heuristic(pdf, other)
+            let rival = self.rival(edge.rival, index, edge.from, edge.ray.direction, f64::INFINITY);
+            let other = edge.pdf.map_or(0.0, |pdf| {
+                self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction) / pdf
             });
-            self.add(weight);
+            self.add(power_heuristic(other, rival));
         }
     }
 
@@ -214,13 +238,14 @@ impl<'a> PathTracer<'a> {
         if profile == 0.0 {
             return;
         }
-        let weight = match (edge.pdf, self.scene.light_of_surface(surface)) {
-            (Some(pdf), Some(light)) => {
-                let towards = self.scene.lights()[light].pdf_towards(edge.from, edge.ray.direction);
-                power_heuristic(pdf, self.choice.probability(light) * towards)
-            }
-            _ => 1.0,
-        };
+        let weight = self.scene.light_of_surface(surface).map_or(1.0, |light| {
+            let (from, direction) = (edge.from, edge.ray.direction);
+            let rival = self.rival(edge.rival, light, from, direction, from.distance(point.position));
+            let other = edge.pdf.map_or(0.0, |pdf| {
+                self.choice.probability(light) * self.scene.lights()[light].pdf_towards(from, direction) / pdf
+            });
+            power_heuristic(other, rival)
+        });
         self.value.copy_from_slice(emission.radiance());
         self.add(weight * profile);
     }
@@ -253,13 +278,21 @@ impl<'a> PathTracer<'a> {
         }
         let hero = self.hero;
         let seek = !material.is_delta();
+        let rival = match count {
+            // Packets do not come to the lens straight from a mirror or from glass.
+            1 if seek => self.picture_sr * edge.from.distance_squared(point.position),
+            1 => 0.0,
+            _ => edge.rival,
+        };
+        // How a packet that comes from `incident` is sent on the way that the path came; from the first vertex it is sent to the lens.
+        let sent = |incident| if count > 1 && rival > 0.0 { material.pdf(incident, outgoing, hero) } else { 1.0 };
         if seek {
             self.choice.prepare(self.scene.lights(), point.position);
             // Where the path ends here, no other strategy competes with the light's own.
             let competes = self.limits.follow == Follow::All;
             let function = |incident, value: &mut [f64]| {
                 let pdf = evaluate(material, incident, outgoing, hero, value);
-                if competes { pdf } else { 0.0 }
+                [if competes { pdf } else { 0.0 }, rival * sent(incident)]
             };
             self.light(point, u, function, &frame);
         }
@@ -297,16 +330,40 @@ impl<'a> PathTracer<'a> {
             return None;
         }
         let ray = Ray { origin: point.origin_towards(direction), direction };
-        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position })
+        let rival = match drawn.delta {
+            // Either way of a Dirac lobe is as probable as the other.
+            true => {
+                if count > 1 {
+                    rival
+                } else {
+                    0.0
+                }
+            }
+            false => rival * sent(drawn.direction) / drawn.pdf,
+        };
+        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position, rival })
+    }
+
+    /// The density with which packets find a path whose last edge leads from `from` to a light, over that of the path's own way, given
+    /// that ratio for all but the light's end.
+    fn rival(&self, before: f64, light: usize, from: DVec3, direction: DVec3, distance: f64) -> f64 {
+        match self.packets {
+            Some(shares) if before > 0.0 => {
+                let density = self.scene.lights()[light].emission_density(from, direction, distance);
+                before * shares.probability(light) * density
+            }
+            _ => 0.0,
+        }
     }
 
     /// Adds the light that one light, drawn at random, sends to a vertex straight away. `function` writes f |cosθ| per band for a local
-    /// direction and gives the density with which the vertex's own sampling draws it.
+    /// direction and gives the density with which the vertex's own sampling draws it, and [`Edge::rival`] of the path with that edge,
+    /// without the density of the edge.
     fn light(
         &mut self,
         point: &SurfacePoint,
         [u0, u1, u2, _]: [f64; 4],
-        function: impl Fn(DVec3, &mut [f64]) -> f64,
+        function: impl Fn(DVec3, &mut [f64]) -> [f64; 2],
         frame: &Frame,
     ) {
         let Some((index, probability, stretched)) = self.choice.draw(u0) else { return };
@@ -318,7 +375,7 @@ impl<'a> PathTracer<'a> {
         if towards.direction.dot(point.normal) * local.z <= 0.0 {
             return;
         }
-        let own = function(local, &mut self.value);
+        let [own, before] = function(local, &mut self.value);
         if self.value.iter().all(|&v| v == 0.0) {
             return;
         }
@@ -328,12 +385,10 @@ impl<'a> PathTracer<'a> {
         if casts_shadows && self.scene.surfaces().is_occluded(&ray, towards.distance, ignored) {
             return;
         }
-        let weight = if towards.delta {
-            1.0 / probability
-        } else {
-            let pdf = probability * towards.pdf;
-            power_heuristic(pdf, own) / pdf
-        };
+        let pdf = probability * towards.pdf;
+        let own = if towards.delta { 0.0 } else { own };
+        let rival = self.rival(before, index, point.position, towards.direction, towards.distance);
+        let weight = power_heuristic(own / pdf, rival / pdf) / pdf;
         multiply(&mut self.value, &self.arriving);
         self.add(weight);
     }
@@ -359,11 +414,7 @@ fn multiply(values: &mut [f64], by: &[f64]) {
     values.iter_mut().zip(by).for_each(|(v, b)| *v *= b);
 }
 
-/// p² / (p² + o²), without overflow.
-fn power_heuristic(p: f64, o: f64) -> f64 {
-    if p == 0.0 {
-        return 0.0;
-    }
-    let ratio = o / p;
-    1.0 / (1.0 + ratio * ratio)
+/// p² / (p² + o² + r²) of the densities o/p and r/p of two other ways; 0 where p is, and they are infinite.
+fn power_heuristic(other: f64, rival: f64) -> f64 {
+    1.0 / (1.0 + other * other + rival * rival)
 }

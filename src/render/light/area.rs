@@ -93,6 +93,18 @@ impl Light for AreaLight {
         Some(Ray { origin: point.origin_towards(direction), direction })
     }
 
+    fn emission_density(&self, from: DVec3, direction: DVec3, _: f64) -> f64 {
+        let normal = self.shape.facing().or_else(|| {
+            let ray = Ray { origin: from, direction };
+            let crossing = self.shape.cross(&ray, 0.0, f64::INFINITY)?;
+            Some(self.shape.surface(&ray, &crossing).normal)
+        });
+        let profile = normal.map_or(0.0, |n| self.emission.profile_towards(-direction, n.dot(-direction)));
+        let exitance = self.emission.exitance_per_radiance();
+        // L/Φ: rays are drawn as the light shines.
+        if exitance > 0.0 { profile / (exitance * self.area) } else { 0.0 }
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         let weight = self.area * self.emission.exitance_per_radiance();
         for (f, l) in flux.iter_mut().zip(self.emission.radiance()) {

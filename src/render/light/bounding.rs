@@ -49,6 +49,16 @@ impl BoundingSphere {
         let origin = self.centre + self.radius * (towards_light + p.x * x + p.y * y);
         Ray { origin, direction: -towards_light }
     }
+
+    /// The density, per area across the ray, 1/m², with which [`BoundingSphere::ray_from`] draws the ray that passes `point`: 0 where
+    /// none does.
+    #[must_use]
+    pub fn density_at(&self, point: DVec3, towards_light: DVec3) -> f64 {
+        let from_centre = point - self.centre;
+        let along = from_centre.dot(towards_light);
+        let across = (from_centre - along * towards_light).length_squared();
+        if across <= self.radius * self.radius && along <= self.radius { 1.0 / self.cross_section() } else { 0.0 }
+    }
 }
 
 #[cfg(test)]

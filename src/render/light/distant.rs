@@ -97,6 +97,11 @@ impl Light for Distant {
         Some(self.scene.ray_from(self.draw([u, v]).0, [s, t]))
     }
 
+    fn emission_density(&self, from: DVec3, direction: DVec3, _: f64) -> f64 {
+        let per_solid_angle = if self.depth == 0.0 { 1.0 } else { self.pdf_towards(from, direction) };
+        per_solid_angle * self.scene.density_at(from, direction)
+    }
+
     fn is_one_direction(&self) -> bool {
         self.depth == 0.0
     }

@@ -261,6 +261,10 @@ impl Light for Environment {
         Some(self.scene.ray_from(self.to_world * local, [s, t]))
     }
 
+    fn emission_density(&self, from: DVec3, direction: DVec3, _: f64) -> f64 {
+        self.pdf_towards(from, direction) * self.scene.density_at(from, direction)
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         super::write(flux, &self.integral, self.scene.cross_section());
     }

@@ -253,6 +253,12 @@ impl Light for Goniometric {
         Some(Ray { origin: self.origin([s, t]), direction })
     }
 
+    /// As if rays were drawn in proportion to the intensity itself, not to the mean of its corners in a cell.
+    fn emission_density(&self, _: DVec3, direction: DVec3, distance: f64) -> f64 {
+        let flux = self.flux_per_peak();
+        if flux > 0.0 { self.relative_intensity(-direction) / flux / distance / distance } else { 0.0 }
+    }
+
     fn is_one_direction(&self) -> bool {
         self.opening.is_none()
     }

@@ -13,7 +13,7 @@
 //! | [`sun`] | the sun by date, time and place | a disc |
 //! | [`distant`] | parallel light, or a disc in the sky | one direction, or a disc |
 //!
-//! [`choice`] chooses among them; lights at infinity shine through the scene's [`bounding`] sphere.
+//! [`choice`] chooses among them, and [`shares`] where a packet of flux begins; lights at infinity shine through the scene's [`bounding`] sphere.
 
 pub mod barzel;
 pub mod bounding;
@@ -26,6 +26,7 @@ pub mod environment;
 pub mod goniometric;
 pub mod point;
 pub mod projection;
+pub mod shares;
 pub mod sky;
 pub mod spot;
 pub mod sun;
@@ -58,6 +59,15 @@ pub trait Light: std::fmt::Debug + Send + Sync {
     /// Draws a ray of the light that it sends out, from five uniform numbers, and writes flux / pdf per band, W/nm or W: the mean over
     /// draws is the light's whole flux (for a light at infinity: the flux through the scene's bounding sphere). `None`: a draw of zero flux.
     fn emit(&self, u: [f64; 5], flux: &mut [f64]) -> Option<Ray>;
+
+    /// The density with which [`Light::emit`] draws the ray that comes to the point `from` from `direction` (unit, towards the light) and
+    /// `distance` metres away: per area across the ray, 1/m², and for a light of some extent per solid angle as well, 1/(m² sr). It weighs
+    /// the ways of finding a path against each other, so that a close figure will do; 0 is always right, and says that rays of
+    /// [`Light::emit`] are not to be relied on.
+    fn emission_density(&self, from: DVec3, direction: DVec3, distance: f64) -> f64 {
+        let _ = (from, direction, distance);
+        0.0
+    }
 
     /// Writes the whole radiant flux per band, W/nm or W; for a light at infinity that through the scene's bounding sphere.
     fn flux(&self, flux: &mut [f64]);

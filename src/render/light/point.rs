@@ -58,6 +58,10 @@ impl Light for Point {
         Some(Ray { origin: self.position, direction: cone([u, v], 2.0) })
     }
 
+    fn emission_density(&self, _: DVec3, _: DVec3, distance: f64) -> f64 {
+        1.0 / (4.0 * PI) / distance / distance
+    }
+
     fn is_one_direction(&self) -> bool {
         true
     }

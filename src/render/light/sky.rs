@@ -259,6 +259,10 @@ impl Light for Sky {
         Some(self.scene.ray_from(direction, [s, t]))
     }
 
+    fn emission_density(&self, from: DVec3, direction: DVec3, _: f64) -> f64 {
+        self.pdf_towards(from, direction) * self.scene.density_at(from, direction)
+    }
+
     fn flux(&self, flux: &mut [f64]) {
         write(flux, &self.zenith, self.integral_over_zenith * self.scene.cross_section());
     }

@@ -105,6 +105,10 @@ impl Light for Spot {
         Some(Ray { origin: self.position, direction: local.x * x + local.y * y + local.z * self.axis })
     }
 
+    fn emission_density(&self, _: DVec3, direction: DVec3, distance: f64) -> f64 {
+        self.relative(-direction) / self.solid_angle() / distance / distance
+    }
+
     fn is_one_direction(&self) -> bool {
         true
     }

@@ -45,6 +45,21 @@ pub enum Projection {
     Equirectangular,
 }
 
+/// Where a point of the scene is shown on the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// From the left edge, pixels.
+    pub x: f64,
+    /// From the upper edge, pixels.
+    pub y: f64,
+    /// The place on the lens that its light passes.
+    pub lens: DVec3,
+    /// From the lens to the point, unit vector.
+    pub direction: DVec3,
+    /// From the lens to the point, m.
+    pub distance: f64,
+}
+
 /// A camera that records radiance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
@@ -168,9 +183,9 @@ impl Camera {
                 let tangents = p * (0.5 * field_of_view_deg).to_radians().tan();
                 ray(self.position, distortion.undistort(tangents)?.extend(1.0))
             }
-            Projection::ThinLens { field_of_view_deg, aperture_radius_m, focus_m } => {
+            Projection::ThinLens { field_of_view_deg, focus_m, .. } => {
                 let sharp = (p * (0.5 * field_of_view_deg).to_radians().tan()).extend(1.0) * focus_m;
-                let through = sampling::disk(lens) * aperture_radius_m;
+                let through = self.through(lens);
                 let origin = self.position + through.x * self.right - through.y * self.up;
                 ray(origin, sharp - through.extend(0.0))
             }
@@ -191,6 +206,106 @@ impl Camera {
             }
         }
     }
+
+    /// Where the picture shows a point, seen from a point of the lens, two uniform numbers as for [`Camera::ray`]; `None` where it does
+    /// not. Whether something stands in between is not asked.
+    #[must_use]
+    pub fn show(&self, point: DVec3, lens: [f64; 2]) -> Option<Shown> {
+        let lens = self.through(lens);
+        let way = point - self.position - lens.x * self.right + lens.y * self.up;
+        let distance = way.length();
+        let direction = way / distance;
+        let d = self.local(direction);
+        let (w, h) = (f64::from(self.width), f64::from(self.height));
+        let place = |p: DVec2| DVec2::new(p.x * w + w, p.y * w + h) / 2.0;
+        let shown = match self.projection {
+            Projection::Perspective { field_of_view_deg, distortion } => {
+                let ideal = ahead(d)?;
+                let tangents = distortion.distort(ideal);
+                // What the lens folds over is not what the pixel's ray meets.
+                let back = distortion.undistort(tangents)?;
+                if back.distance(ideal) > 1e-9 * (1.0 + ideal.length()) {
+                    return None;
+                }
+                place(tangents / (0.5 * field_of_view_deg).to_radians().tan())
+            }
+            Projection::ThinLens { field_of_view_deg, focus_m, .. } => {
+                let sharp = ahead(d)? + lens / focus_m;
+                place(sharp / (0.5 * field_of_view_deg).to_radians().tan())
+            }
+            Projection::Fisheye { field_of_view_deg } => {
+                let across = d.truncate();
+                let r = across.length().atan2(d.z) / (0.5 * field_of_view_deg).to_radians();
+                if r > 1.0 {
+                    return None;
+                }
+                let radius = across.normalize_or_zero() * r * w.min(h);
+                DVec2::new(radius.x + w, radius.y + h) / 2.0
+            }
+            Projection::Equirectangular => {
+                DVec2::new((d.x.atan2(d.z) / TAU + 0.5) * w, (FRAC_PI_2 + d.y.clamp(-1.0, 1.0).asin()) / PI * h)
+            }
+        };
+        let within = shown.x >= 0.0 && shown.x < w && shown.y >= 0.0 && shown.y < h;
+        let lens = self.position + lens.x * self.right - lens.y * self.up;
+        (distance > 0.0 && within).then_some(Shown { x: shown.x, y: shown.y, lens, direction, distance })
+    }
+
+    /// Pixels per solid angle, 1/sr, about the rays in a direction (unit, world) that the picture shows: what a pixel's mean of the
+    /// radiance weighs it with.
+    #[must_use]
+    pub fn pixels_per_solid_angle(&self, direction: DVec3) -> f64 {
+        let d = self.local(direction);
+        let (w, h) = (f64::from(self.width), f64::from(self.height));
+        let flat = |field_of_view_deg: f64| {
+            let scale = 0.5 * w / (0.5 * field_of_view_deg).to_radians().tan();
+            scale * scale / (d.z * d.z * d.z)
+        };
+        match self.projection {
+            Projection::Perspective { field_of_view_deg, distortion } => {
+                let bent = ahead(d).map_or(0.0, |tangents| distortion.jacobian(tangents).determinant());
+                flat(field_of_view_deg) * bent
+            }
+            Projection::ThinLens { field_of_view_deg, .. } => flat(field_of_view_deg),
+            Projection::Fisheye { field_of_view_deg } => {
+                let (sin, half) = (d.truncate().length(), (0.5 * field_of_view_deg).to_radians());
+                // θ/sinθ
+                let stretch = if sin > 0.0 { sin.atan2(d.z) / sin } else { 1.0 };
+                (0.5 * w.min(h) / half).powi(2) * stretch
+            }
+            Projection::Equirectangular => w * h / (TAU * PI * d.x.hypot(d.z)),
+        }
+    }
+
+    /// Whether its rays start from all over a lens, not from one point.
+    #[must_use]
+    pub fn has_lens(&self) -> bool {
+        matches!(self.projection, Projection::ThinLens { .. })
+    }
+
+    /// Pixels of the picture.
+    #[must_use]
+    pub fn pixels(&self) -> f64 {
+        f64::from(self.width) * f64::from(self.height)
+    }
+
+    /// A point of the lens, m from its middle, to the right and downwards.
+    fn through(&self, lens: [f64; 2]) -> DVec2 {
+        match self.projection {
+            Projection::ThinLens { aperture_radius_m, .. } => sampling::disk(lens) * aperture_radius_m,
+            _ => DVec2::ZERO,
+        }
+    }
+
+    /// A direction of the world, to the right, downwards and forward.
+    fn local(&self, direction: DVec3) -> DVec3 {
+        DVec3::new(direction.dot(self.right), -direction.dot(self.up), direction.dot(self.forward))
+    }
+}
+
+/// The tangents of a direction before the camera.
+fn ahead(d: DVec3) -> Option<DVec2> {
+    (d.z > 0.0).then(|| d.truncate() / d.z)
 }
 
 #[cfg(test)]
@@ -254,6 +369,44 @@ mod tests {
         assert!((direction(&all, 300.0, 100.0) - DVec3::X).length() < 1e-15);
         assert!((direction(&all, 200.0, 0.0) - DVec3::Z).length() < 1e-15);
         assert!((direction(&all, 0.0, 100.0) - DVec3::NEG_Y).length() < 1e-15);
+    }
+
+    /// Every projection: the point that a pixel's ray meets is shown where the ray came from, through the same point of the lens; and
+    /// the solid angle of a small square of the picture, from its rays, is its area over the pixels per solid angle.
+    #[test]
+    fn points_are_shown_where_their_rays_come_from() {
+        let distortion = Distortion { k1: -0.05716, k2: 0.09202, p1: -0.00025, p2: 0.00228, k3: -0.01908 };
+        for projection in [
+            perspective(60.0),
+            Projection::Perspective { field_of_view_deg: 70.0, distortion },
+            Projection::ThinLens { field_of_view_deg: 50.0, aperture_radius_m: 0.1, focus_m: 1.5 },
+            Projection::Fisheye { field_of_view_deg: 200.0 },
+            Projection::Equirectangular,
+        ] {
+            let camera = camera(projection).unwrap();
+            for (x, y) in [(200.0, 100.0), (201.5, 99.0), (150.2, 30.7), (270.9, 160.1)] {
+                let lens = [0.3, 0.8];
+                let ray = camera.ray(x, y, lens).unwrap();
+                let shown = camera.show(ray.at(2.7), lens).unwrap();
+                assert!((shown.x - x).abs() < 1e-9 && (shown.y - y).abs() < 1e-9, "{projection:?} {x} {y}: {shown:?}");
+                assert!((shown.lens - ray.origin).length() < 1e-14 && (shown.distance - 2.7).abs() < 1e-13);
+                assert!((shown.direction - ray.direction).length() < 1e-13);
+                let h = 1e-3;
+                let [left, right] = [x - h, x + h].map(|x| camera.ray(x, y, lens).unwrap().direction);
+                let [up, down] = [y - h, y + h].map(|y| camera.ray(x, y, lens).unwrap().direction);
+                // Central differences: an error of h² times third derivatives of some 1e-2 per pixel².
+                let solid_angle = (right - left).cross(down - up).length();
+                let pixels = camera.pixels_per_solid_angle(ray.direction) * solid_angle;
+                assert!((pixels / (4.0 * h * h) - 1.0).abs() < 1e-6, "{projection:?} {x} {y}: {pixels}");
+            }
+        }
+        // Behind the camera, beside the picture, beyond the circle, at the lens itself.
+        let from = DVec3::new(1.0, -2.0, 3.0);
+        let flat = camera(perspective(60.0)).unwrap();
+        assert!(flat.show(from - DVec3::Y, [0.5; 2]).is_none() && flat.show(from, [0.5; 2]).is_none());
+        assert!(flat.show(from + DVec3::new(2.0, 1.0, 0.0), [0.5; 2]).is_none());
+        let fisheye = camera(Projection::Fisheye { field_of_view_deg: 180.0 }).unwrap();
+        assert!(fisheye.show(from - 0.1 * DVec3::Y + DVec3::X, [0.5; 2]).is_none());
     }
 
     #[test]

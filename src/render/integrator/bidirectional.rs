@@ -1,0 +1,348 @@
+//! Paths from both ends: packets of flux from the lights to the surfaces that the camera sees, beside the paths from the camera.
+//!
+//! A path tracer finds a light's caustic, what glass gathers on a wall, only where a path happens to run through the glass into the
+//! lamp; of a lamp without extent it finds nothing. A packet from the lamp finds it at once: at every vertex that is no mirror and no
+//! polished glass it is connected with the lens and adds to the pixel there
+//!
+//! ```text
+//! Δ = w Φ f_s |cosθ_c| J/d²        J = dx dy/dω: pixels per solid angle; d: distance from the lens
+//! ```
+//!
+//! What packets do not find is what mirrors and glass show the camera directly, and lamps themselves; those are left to the path tracer
+//! whole. Everything else both find, and every path x₀ (lens) … x_k (lamp) is weighed by the power heuristic of all ways to find it:
+//!
+//! ```text
+//! s₀: the camera's path meets the lamp     s₁: the lamp is sought from x_{k−1}     t₁: a packet is connected with the lens
+//! p_t₁/p_s₀ = g d₀₁² Ω / p→(x₁) · Π_{i=2}^{k−1} p←(x_i)/p→(x_i),     p_s₁/p_s₀ = p_light / p→(x_{k−1})
+//! ```
+//!
+//! p→ and p← are the materials' densities per solid angle from the camera's and from the lamp's side, g that of the packet's emission
+//! ([`Light::emission_density`](crate::render::light::Light::emission_density)) times the light's probability, Ω = W H/J: there are as many packets as samples in all W × H
+//! pixels. The cosines of the edges cancel. Both sides compute one and the same function of the path, so that the weights of the three
+//! ways sum to 1 whatever is left out of them (the ends by chance; for a Dirac lobe, whose choice is as probable either way, and n²).
+//!
+//! A packet carries all bands until it is refracted for one of them, as a path does, and is split by the same probabilities. Behind a
+//! fluorescent surface it is seen in its hero's band alone, because the path from the camera would have carried only that one.
+//!
+//! Shading normals: flux is scattered with the factor |ω_i·n_s| |ω_o·n_g| / (|ω_i·n_g| |ω_o·n_s|) that makes it agree with radiance.
+//!
+//! Limits: lights that do not behave as light does ([`Light::emission_density`](crate::render::light::Light::emission_density) is 0) are left to the path tracer; a caustic that is
+//! seen in a mirror or through glass is found by neither (but by chance, from the camera).
+//!
+//! References: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, thesis, Stanford 1997, §5.3 (shading normals),
+//! ch. 8 to 10; E. Lafortune & Y. Willems, *Bi-directional Path Tracing*, Compugraphics 1993.
+
+use glam::DVec3;
+
+use super::frame::Frame;
+use super::path::Limits;
+use super::polarisation::Polarisation;
+use crate::math::sampling;
+use crate::render::light::choice::Choice;
+use crate::render::light::shares::Shares;
+use crate::render::material::{Material, Transport};
+use crate::render::ray::{Ray, SurfacePoint};
+use crate::render::sampler::Sampler;
+use crate::render::scene::Scene;
+use crate::render::sensor::camera::Camera;
+
+/// What packets add to a picture.
+#[derive(Debug, Default)]
+pub struct Splats {
+    /// Rows from the top, pixels from the left.
+    pixels: Vec<usize>,
+    /// The bands of each.
+    values: Vec<f64>,
+    /// Where those of the last packet begin.
+    packet: usize,
+}
+
+impl Splats {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.pixels.clear();
+        self.values.clear();
+        self.packet = 0;
+    }
+
+    /// What the last packet added, all pixels one behind the other.
+    #[must_use]
+    pub fn last(&self, bands: usize) -> &[f64] {
+        &self.values[self.packet * bands..]
+    }
+
+    /// Forgets what the last packet added.
+    pub fn drop_last(&mut self, bands: usize) {
+        self.pixels.truncate(self.packet);
+        self.values.truncate(self.packet * bands);
+    }
+
+    /// The pixel, by its place row by row, and the bands of each; a packet adds to a pixel at most once.
+    pub fn iter(&self, bands: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        self.pixels.iter().copied().zip(self.values.chunks_exact(bands))
+    }
+
+    fn next_packet(&mut self) {
+        self.packet = self.pixels.len();
+    }
+
+    /// The bands of a pixel, for the last packet to add to.
+    fn of(&mut self, pixel: usize, bands: usize) -> &mut [f64] {
+        let at = (self.pixels[self.packet..].iter().position(|p| *p == pixel))
+            .map_or(self.pixels.len(), |i| self.packet + i);
+        if at == self.pixels.len() {
+            self.pixels.push(pixel);
+            self.values.resize(self.values.len() + bands, 0.0);
+        }
+        &mut self.values[at * bands..][..bands]
+    }
+}
+
+/// The tracer of packets towards a camera, of one thread.
+#[derive(Debug)]
+pub struct PacketTracer<'a> {
+    scene: &'a Scene,
+    limits: Limits,
+    heroes: &'a [f64],
+    shares: &'a Shares,
+    camera: &'a Camera,
+    choice: Choice,
+    flux: Vec<f64>,
+    value: Vec<f64>,
+    polarisation: Polarisation,
+    hero: usize,
+    /// The packet carries its hero alone.
+    split: bool,
+    /// The packet was converted by a fluorescent surface.
+    fluoresced: bool,
+}
+
+/// A vertex that a packet came to.
+struct Vertex<'a> {
+    point: SurfacePoint,
+    frame: Frame,
+    material: &'a dyn Material,
+    /// The direction back to where the packet came from, in the world and in the frame.
+    back: DVec3,
+    arriving: DVec3,
+    /// The band by which the lobes on the lamp's side of it were drawn.
+    hero: usize,
+    /// |ω_i·n_s| / |ω_i·n_g|
+    shading: f64,
+}
+
+/// How other ways find what the packet is about to find: (p/p_t₁)², without what draws the first edge from the camera.
+#[derive(Debug, Clone, Copy)]
+struct Rivals {
+    /// The camera's path meets the lamp, or, behind the packet's first vertex, either of both; without the density of its last direction.
+    meets: f64,
+    /// The lamp is sought, from the first vertex of the packet; 0 from there on.
+    seeks: f64,
+}
+
+impl Rivals {
+    /// After a vertex from which the camera's path would have gone on with the density `onwards`, and the packet with `sent`.
+    fn after(self, onwards: f64, sent: f64) -> Self {
+        let squared = |x: f64| x * x;
+        Self { meets: (self.meets * squared(onwards) + self.seeks) / squared(sent), seeks: 0.0 }
+    }
+}
+
+impl<'a> PacketTracer<'a> {
+    /// A tracer for a scene and a camera; `heroes` as for [`super::path::PathTracer::new`], `shares` of the scene's lights.
+    #[must_use]
+    pub fn new(scene: &'a Scene, limits: Limits, heroes: &'a [f64], shares: &'a Shares, camera: &'a Camera) -> Self {
+        let n = scene.bands().len();
+        let bounds = scene.bounds();
+        let middle = if bounds.is_finite() { 0.5 * (bounds.min + bounds.max) } else { DVec3::ZERO };
+        Self {
+            scene,
+            limits,
+            heroes,
+            shares,
+            camera,
+            choice: Choice::new(scene.lights(), middle),
+            flux: vec![0.0; n],
+            value: vec![0.0; n],
+            polarisation: Polarisation::new(n),
+            hero: 0,
+            split: false,
+            fluoresced: false,
+        }
+    }
+
+    /// Sends one packet through the scene; the mean of what packets add is what they add to the picture's radiance.
+    pub fn packet(&mut self, sampler: &mut Sampler, splats: &mut Splats) {
+        splats.next_packet();
+        let [choice, u0, u1, hero] = sampler.four();
+        let [u2, u3, u4, _] = sampler.four();
+        let Some((index, probability)) = self.shares.draw(choice) else { return };
+        let light = &self.scene.lights()[index];
+        let Some(mut ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
+        self.flux.iter_mut().for_each(|f| *f /= probability);
+        let start: f64 = self.flux.iter().sum();
+        self.choose_hero(hero);
+        self.fluoresced = false;
+        self.polarisation.clear();
+        let mut rivals: Option<Rivals> = None;
+        // Edges of the path from the lamp to the lens.
+        for edges in 2.. {
+            if self.limits.max_edges.is_some_and(|max| edges > max) {
+                return;
+            }
+            let Some((surface, crossing)) = self.scene.surfaces().closest(&ray, f64::INFINITY) else { return };
+            let point = self.scene.surfaces().surface_point(surface, &ray, &crossing);
+            let frame = Frame::of(point.shading, point.tangent);
+            let (back, material) = (-ray.direction, self.scene.material(surface));
+            let arriving = frame.local(back);
+            // A shading normal can send light through the surface: no light comes from there.
+            if back.dot(point.normal) * arriving.z <= 0.0 {
+                return;
+            }
+            let here = match rivals {
+                Some(rivals) => rivals,
+                None => match self.rivals(index, probability, &point, back, crossing.t, material) {
+                    Some(rivals) => rivals,
+                    None => return,
+                },
+            };
+            let hero = self.hero;
+            if material.convert(point.uv, Transport::Flux, &mut self.flux, &mut self.value) {
+                let [u, ..] = sampler.four();
+                self.choose_hero(u);
+                self.fluoresced = true;
+            }
+            if material.splits() {
+                self.split();
+            }
+            let shading = arriving.z.abs() / back.dot(point.normal).abs();
+            let vertex = Vertex { point, frame, material, back, arriving, hero, shading };
+            let [u0, u1, u2, chance] = sampler.four();
+            if !material.is_delta() {
+                self.connect(&vertex, here, sampler, splats);
+            }
+            let Some((direction, behind)) = self.scatter(&vertex, here, [u0, u1, u2]) else { return };
+            rivals = Some(behind);
+            let strength = self.flux.iter().sum::<f64>() / start;
+            if strength < 1.0 {
+                let (goes_on, _) = sampling::split(chance, strength);
+                if !goes_on {
+                    return;
+                }
+                self.flux.iter_mut().for_each(|f| *f /= strength);
+            }
+            ray = Ray { origin: vertex.point.origin_towards(direction), direction };
+        }
+    }
+
+    fn choose_hero(&mut self, u: f64) {
+        self.split = false;
+        self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
+    }
+
+    fn probability_of_hero(&self) -> f64 {
+        let below = if self.hero == 0 { 0.0 } else { self.heroes[self.hero - 1] };
+        self.heroes[self.hero] - below
+    }
+
+    /// The hero stands for all bands from here on.
+    fn split(&mut self) {
+        if self.split {
+            return;
+        }
+        self.split = true;
+        let kept = self.flux[self.hero] / self.probability_of_hero();
+        self.flux.fill(0.0);
+        self.flux[self.hero] = kept;
+    }
+
+    /// The rivals at the first vertex of a packet; `None` where what packets find is left to others.
+    fn rivals(
+        &mut self,
+        light: usize,
+        probability: f64,
+        point: &SurfacePoint,
+        back: DVec3,
+        distance: f64,
+        material: &dyn Material,
+    ) -> Option<Rivals> {
+        let source = &self.scene.lights()[light];
+        let density = probability * source.emission_density(point.position, back, distance);
+        // An infinite one is that of a surface at a point light itself.
+        if !(density > 0.0 && density.is_finite()) {
+            return None;
+        }
+        let towards = source.pdf_towards(point.position, back);
+        // Nothing but being sought finds a light of no extent, whose directions have no density.
+        let (meets, per_solid_angle) = if towards > 0.0 { (1.0, towards) } else { (0.0, 1.0) };
+        let seeks = if material.is_delta() {
+            0.0
+        } else {
+            self.choice.prepare(self.scene.lights(), point.position);
+            self.choice.probability(light) * per_solid_angle
+        };
+        let squared = |p: f64| (p / density) * (p / density);
+        Some(Rivals { meets: squared(meets), seeks: squared(seeks) })
+    }
+
+    /// Adds what the camera sees of the packet at a vertex.
+    fn connect(&mut self, vertex: &Vertex<'_>, rivals: Rivals, sampler: &mut Sampler, splats: &mut Splats) {
+        let point = &vertex.point;
+        let lens = if self.camera.has_lens() { sampler.four() } else { [0.5; 4] };
+        let Some(shown) = self.camera.show(point.position, [lens[0], lens[1]]) else { return };
+        let direction = -shown.direction;
+        let outgoing = vertex.frame.local(direction);
+        vertex.material.evaluate(vertex.arriving, outgoing, Transport::Radiance, &mut self.value);
+        if self.value.iter().zip(&self.flux).all(|(v, f)| v * f == 0.0) {
+            return;
+        }
+        let ray = Ray { origin: point.origin_towards(direction), direction };
+        if self.scene.surfaces().is_occluded(&ray, shown.distance, None) {
+            return;
+        }
+        let pixels_per_area = self.camera.pixels_per_solid_angle(shown.direction) / shown.distance / shown.distance;
+        let lens_density = pixels_per_area / self.camera.pixels();
+        let met = rivals.after(vertex.material.pdf(outgoing, vertex.arriving, vertex.hero), 1.0).meets;
+        let weight = 1.0 / (1.0 + lens_density * lens_density * met);
+        let factor = weight * vertex.shading * direction.dot(point.normal).abs() * pixels_per_area;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+        let pixel = shown.y as usize * self.camera.width() as usize + shown.x as usize;
+        let splat = splats.of(pixel, self.flux.len());
+        let (alone, probability) = (self.fluoresced && !self.split, self.probability_of_hero());
+        if alone {
+            splat[self.hero] += factor * self.flux[self.hero] * self.value[self.hero] / probability;
+        } else {
+            splat.iter_mut().zip(&self.flux).zip(&self.value).for_each(|((s, f), v)| *s += factor * f * v);
+        }
+    }
+
+    /// Draws the packet's next direction, with the rivals behind the vertex; `None` where it ends.
+    fn scatter(&mut self, vertex: &Vertex<'_>, rivals: Rivals, u: [f64; 3]) -> Option<(DVec3, Rivals)> {
+        let Vertex { point, material, arriving, .. } = vertex;
+        let drawn = material.sample(*arriving, u, Transport::Flux, self.hero, &mut self.value)?;
+        let direction = vertex.frame.world(drawn.direction);
+        let onwards_normal = direction.dot(point.normal).abs();
+        if drawn.delta {
+            let scale = vertex.shading * onwards_normal / drawn.direction.z.abs();
+            self.flux.iter_mut().zip(&self.value).for_each(|(f, v)| *f *= v * scale);
+            if self.limits.polarisation {
+                let components = |c: &mut [_]| material.polarise(*arriving, drawn.direction, c);
+                self.polarisation.turn(components, [-vertex.back, direction], point.shading, &mut self.flux);
+            } else {
+                self.polarisation.clear();
+            }
+            if drawn.split {
+                self.split();
+            }
+            // A lamp is not sought for a lobe of Dirac's.
+            return Some((direction, Rivals { seeks: 0.0, ..rivals }));
+        }
+        // The function from lamp to camera itself: not all measured ones are the same both ways.
+        material.evaluate(*arriving, drawn.direction, Transport::Radiance, &mut self.value);
+        let scale = vertex.shading * onwards_normal / drawn.pdf;
+        self.flux.iter_mut().zip(&self.value).for_each(|(f, v)| *f *= v * scale);
+        self.polarisation.clear();
+        let onwards = material.pdf(drawn.direction, *arriving, vertex.hero);
+        Some((direction, rivals.after(onwards, drawn.pdf)))
+    }
+}
