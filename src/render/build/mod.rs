@@ -210,7 +210,8 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;
     let packets = render.solver == Solver::Bidirectional;
-    let settings = Settings { packets, ..Settings::new(render.seed, limits, scene.bands().len()) };
+    let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
+    let settings = Settings { packets, ..settings };
     Ok(Built {
         scene,
         instruments,
