@@ -224,7 +224,7 @@ impl<'a> PathTracer<'a> {
             light.add_radiance(edge.ray.direction, &mut self.value);
             let rival = self.rival(edge.rival, index, edge.from, edge.ray.direction, f64::INFINITY);
             let other = edge.pdf.map_or(0.0, |pdf| {
-                self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction) / pdf
+                ratio(self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction), pdf)
             });
             self.add(power_heuristic(other, rival));
         }
@@ -242,7 +242,7 @@ impl<'a> PathTracer<'a> {
             let (from, direction) = (edge.from, edge.ray.direction);
             let rival = self.rival(edge.rival, light, from, direction, from.distance(point.position));
             let other = edge.pdf.map_or(0.0, |pdf| {
-                self.choice.probability(light) * self.scene.lights()[light].pdf_towards(from, direction) / pdf
+                ratio(self.choice.probability(light) * self.scene.lights()[light].pdf_towards(from, direction), pdf)
             });
             power_heuristic(other, rival)
         });
@@ -412,6 +412,11 @@ fn evaluate(material: &dyn Material, incident: DVec3, outgoing: DVec3, hero: usi
 
 fn multiply(values: &mut [f64], by: &[f64]) {
     values.iter_mut().zip(by).for_each(|(v, b)| *v *= b);
+}
+
+/// How much larger a density is than a path's own; infinite where that has none.
+fn ratio(other: f64, own: f64) -> f64 {
+    if own > 0.0 { other / own } else { f64::INFINITY }
 }
 
 /// p² / (p² + o² + r²) of the densities o/p and r/p of two other ways; 0 where p is, and they are infinite.

@@ -20,7 +20,8 @@ impl Shares {
         let mut sums: Vec<f64> = (lights.iter())
             .map(|light| {
                 light.flux(&mut flux);
-                sum += flux.iter().sum::<f64>();
+                // Colours beyond a picture's primaries can make a sum negative, which no probability is.
+                sum += flux.iter().sum::<f64>().max(0.0);
                 sum
             })
             .collect();
