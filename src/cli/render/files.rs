@@ -125,11 +125,14 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
     let incomplete = built.incomplete.iter().map(|i| {
         let name = i.mesh.as_ref().map_or_else(String::new, |n| format!(" of `{n}`"));
         let message = format!(
-            "{} of {} triangles{name} were left out: they span no area, or a corner is not finite; the first is triangle {}",
-            i.triangles, i.of, i.first
+            "{} of {} triangles{name} in {} were left out: they span no area, or a corner is not finite; the first is triangle {}",
+            i.triangles,
+            i.of,
+            beside(path, &i.file),
+            i.first
         );
         Finding::warning("R003", message)
-            .at(Location::default().in_file(&beside(path, &i.file)))
+            .at(Location::at(i.line, i.column).in_file(path))
             .hint("faces count as the file gives them, those of more than three corners as several triangles")
     });
     // A gonioreflectometer brings its own light.

@@ -132,6 +132,10 @@ pub struct Incomplete {
     pub of: usize,
     /// The first that was left out, from 1, as the faces of the mesh are cut into triangles one after the other.
     pub first: usize,
+    /// Line of the scene where the file is first asked for, from 1.
+    pub line: u64,
+    /// Column there, from 1.
+    pub column: u64,
 }
 
 /// What the parts of the builder share.

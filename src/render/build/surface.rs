@@ -186,7 +186,9 @@ impl Builder<'_> {
             let mesh = Mesh::new(object.mesh).map_err(|e| self.wrong(at, format!("{}: {e}", m.file)))?;
             if let Some(first) = mesh.first_skipped() {
                 let (file, triangles) = (m.file.clone(), mesh.skipped());
-                incomplete.push(Incomplete { file, mesh: object.name, triangles, of, first: first + 1 });
+                let Error { line, column, .. } = self.wrong(at, "");
+                let mesh = object.name;
+                incomplete.push(Incomplete { file, mesh, triangles, of, first: first + 1, line, column });
             }
             meshes.push(Arc::new(mesh));
         }
