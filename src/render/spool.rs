@@ -71,6 +71,9 @@ pub struct Task {
     pub meter_samples: u64,
     /// Names all random numbers.
     pub seed: u64,
+    /// Everything is modelled, required or not.
+    #[serde(default)]
+    pub full: bool,
 }
 
 /// What a file holds.
@@ -320,7 +323,7 @@ mod tests {
     fn header() -> Header {
         Header {
             fingerprint: "abc".to_owned(),
-            task: Task { scene: "room.toml".to_owned(), samples: 4, meter_samples: 100, seed: 1 },
+            task: Task { scene: "room.toml".to_owned(), samples: 4, meter_samples: 100, seed: 1, full: false },
             share: Share { index: 1, count: 3 },
             points: 2,
             bands: 2,

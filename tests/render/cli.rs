@@ -326,6 +326,13 @@ camera = { at = [-1, -1, 1], look_at = [1, 1, 1], resolution = [9, 7], exr = "vi
     merge(&["1.shard", "2.shard"]).assert().code(2).stderr(contains("the shares 3/3 are missing"));
     merge(&["1.shard", "1.shard"]).assert().code(2).stderr(contains("twice"));
     merge(&["scene.toml"]).assert().code(2).stderr(contains("found no state of a render"));
+    let full = told(command(&["--json", "--model", "full"]));
+    for n in ["1", "2"] {
+        let shard = format!("{n}/2");
+        let file = format!("full.{n}.shard");
+        command(&["--model", "full", "--shard", &shard, "-o", &file]).assert().success();
+    }
+    assert!(full == told(merge(&["full.1.shard", "full.2.shard"])), "shares forget what is modelled");
     command(&["--seed", "5", "--resume", "a.state"]).assert().code(2).stderr(contains("the state of another render"));
     command(&["--resume", "none.state"]).assert().code(2).stderr(contains("cannot be opened"));
     command(&["--shard", "4/3", "-o", "x"]).assert().code(2);

@@ -60,7 +60,7 @@ pub(super) struct RenderArgs {
     meter_samples: Option<u64>,
     /// What is modelled, instead of the scene's: only what the scene requires (minimal), or everything (full): wavelengths 1 nm apart,
     /// polarisation, lights of no flux. Both agree within their error bars.
-    #[arg(long, value_name = "EXTENT", value_parser = model, conflicts_with = "shard")]
+    #[arg(long, value_name = "EXTENT", value_parser = model)]
     model: Option<Model>,
     /// A file with `[render]` keys in place of the scene's, as `trade render --settings` writes it; options given here go before it.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["preview", "checkpoint", "resume", "shard"])]
@@ -238,7 +238,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         samples: Some(task.samples),
         meter_samples: Some(task.meter_samples),
         seed: Some(task.seed),
-        model: None,
+        model: Some(if task.full { Model::Full } else { Model::Minimal }),
         settings: Settings::default(),
     };
     let work = Work::new(&task.scene, &overrides)?;

@@ -123,6 +123,7 @@ impl Work {
             samples: render.samples,
             meter_samples: render.meter_samples,
             seed: render.seed,
+            full: render.model == Model::Full,
         };
         state::header(&self.built, self.meters.len(), &self.fingerprint, share, &task)
     }
