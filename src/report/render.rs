@@ -190,6 +190,7 @@ fn intensity(m: &Measured) -> Value {
         |values: Vec<f64>| -> Vec<Vec<f64>> { values.chunks(m.gamma_deg.len()).map(<[f64]>::to_vec).collect() };
     json!({
         "unit": "cd",
+        "table_flux_lm": m.luminaire("").map(|lamp| lamp.distribution.total_flux()).ok(),
         "c_deg": m.c_deg,
         "gamma_deg": m.gamma_deg,
         "values": planes(m.intensity.iter().map(|f| f.value).collect()),

@@ -111,6 +111,8 @@ goniophotometer = {{ c_step = "{c_step} deg", gamma_step = "{gamma_step} deg", f
         let (got, error) = (number(&sensors[0]["value"]), number(&sensors[0]["standard_error"]));
         assert!((got - flux).abs() <= 3.0 * error + 1e-9 * flux, "{turn:?}: {got} ± {error} lm, expected {flux}");
         assert_eq!(sensors[0]["unit"], "lm");
+        let (told, written) = (number(&sensors[0]["intensity"]["table_flux_lm"]), after.total_flux());
+        assert!((told - written).abs() < 4.0 * PI * allowed, "{turn:?}: {told} lm, {written} in the file");
     }
 }
 
