@@ -43,8 +43,8 @@ pub struct Noise {
 
 /// A picture that is rendered when it is read.
 ///
-/// Where packets help ([`Settings::packets`]), they are sent before anything is read, as many as samples of all pixels, and the whole picture's
-/// part of them is kept in memory.
+/// Where packets help ([`Settings::packets`]), they are sent before anything is read, as many as samples of all pixels, and the whole
+/// picture's part of them is kept in memory.
 ///
 /// Its channels are the bands of the scene (spectral radiance), then X, Y, Z in cd/m² of the observer whose weights it was given.
 /// The value of a pixel is the mean over the pixel's square (box filter). A region that is read twice is rendered twice, to the same

@@ -1,7 +1,7 @@
 //! What packets of flux add to a picture: the part of it that [`PacketTracer`] finds.
 //!
-//! Packets are traced in rounds of a fixed number of streams, each by itself; then every pixel adds up what the streams brought it, stream by
-//! stream. The order of every sum is that of the numbers of streams and packets, so that the same bits come out for any number of
+//! Packets are traced in rounds of a fixed number of streams, each by itself; then every pixel adds up what the streams brought it,
+//! stream by stream. The order of every sum is that of the numbers of streams and packets, so that the same bits come out for any number of
 //! threads. The picture is held as a whole, in `f64`: 8 bytes a pixel and band.
 //!
 //! A pixel's variance is that of independent packets, Σ(y − ȳ)²/(M (M − 1)) over all M of them, most of which bring it nothing. Packets

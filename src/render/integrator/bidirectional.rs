@@ -17,8 +17,8 @@
 //! ```
 //!
 //! p→ and p← are the materials' densities per solid angle from the camera's and from the lamp's side, g that of the packet's emission
-//! ([`Light::emission_density`](crate::render::light::Light::emission_density)) times the light's probability, Ω = W H/J: there are as many packets as samples in all W × H
-//! pixels. The cosines of the edges cancel. Both sides compute one and the same function of the path, so that the weights of the three
+//! ([`Light::emission_density`]) times the light's probability, Ω = W H/J: there are as many packets as samples in all W × H pixels. The
+//! cosines of the edges cancel. Both sides compute one and the same function of the path, so that the weights of the three
 //! ways sum to 1 whatever is left out of them (the ends by chance; for a Dirac lobe, whose choice is as probable either way, and n²).
 //!
 //! A packet carries all bands until it is refracted for one of them, as a path does, and is split by the same probabilities. Behind a
@@ -26,8 +26,10 @@
 //!
 //! Shading normals: flux is scattered with the factor |ω_i·n_s| |ω_o·n_g| / (|ω_i·n_g| |ω_o·n_s|) that makes it agree with radiance.
 //!
-//! Limits: lights that do not behave as light does ([`Light::emission_density`](crate::render::light::Light::emission_density) is 0) are left to the path tracer; a caustic that is
-//! seen in a mirror or through glass is found by neither (but by chance, from the camera).
+//! Limits: lights that do not behave as light does ([`Light::emission_density`] is 0) are left to the path tracer; a caustic that is seen
+//! in a mirror or through glass is found by neither (but by chance, from the camera).
+//!
+//! [`Light::emission_density`]: crate::render::light::Light::emission_density
 //!
 //! References: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, thesis, Stanford 1997, §5.3 (shading normals),
 //! ch. 8 to 10; E. Lafortune & Y. Willems, *Bi-directional Path Tracing*, Compugraphics 1993.
