@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--samples N] [--mitsuba]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--mitsuba]
 
 The neutral JSON scenes are written as TOML for photopic; the picture's tristimulus values are compared with the two high-sample references
 there: the mean of (x − r1)(x − r2) is an unbiased estimate of the squared error, relative to r² + (0.01 mean)². Printed are the seconds of
