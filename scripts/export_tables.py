@@ -944,6 +944,20 @@ LOOKUPS = [
         "columns": "H/R, the height over the distance ahead, 0 to 1.9 by 0.1",
         "note": "Blank where the standard has no value.",
     },
+    {
+        "name": "nist-lines",
+        "file": "nist/lines.csv",
+        "title": "Emission lines of calibration lamps: neon, argon, krypton, cadmium, mercury",
+        "standard": "NIST Atomic Spectra Database (SRD 78), neutral atoms; mercury after Sansonetti, Salit and Reader, Appl. Opt. 35, 74 (1996)",
+        "origin": "the wavelengths in air that the arc lists of kspecdr (2026) quote from both; those it lacks from the wavelengths in vacuum that the line lists of PypeIt quote from NIST, brought to air with the index of Peck and Reeder (1972), as NIST does",
+        "checked": "57 lines stand in both: brought to air, the wavelengths in vacuum agree with the ones in air within 5e-5 nm, half of the last digit printed; 36 more stand in one of both and 16 (cadmium, weaker neon, Hg 253.6521) in the first alone, with the same digits in other lists",
+        "licence": "published values, none stated",
+        "date": "2026-11-26",
+        "sha256": "33df07d3edeebd19fc57f9626ec3477f5119769636b6afd4f2cf8f1f5bbc25fa",
+        "rows": "one strong line each, by atomic number and wavelength",
+        "columns": "atomic number; wavelength in standard air, nm",
+        "note": "Strong lines between 250 and 1020 nm only; no intensities, which depend on the lamp.",
+    },
 ]
 
 

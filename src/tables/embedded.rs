@@ -43,6 +43,7 @@ const FILES: &[(&str, &str)] = files![
     "icnirp/blue_light_hazard.csv",
     "ies/ces99_1nm.csv",
     "mccree/rqe_1972.csv",
+    "nist/lines.csv",
     "refractive/ag.csv",
     "refractive/al.csv",
     "refractive/au.csv",
