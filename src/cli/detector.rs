@@ -107,7 +107,11 @@ pub(super) fn run(arguments: &DetectorArgs, talk: Talk) -> Result<(), Failure> {
                 let message = format!("the responsivity covers {low}–{high} nm of 380–780 nm; it counts as 0 beyond");
                 findings.push(Finding::warning("D001", message));
             }
-            let worth = budget.as_ref().map(|b| uncertainty::detector::evaluate(&plan, b, &one.spectrum)).transpose();
+            let worth = budget.as_ref().map(|b| {
+                let own = b.with_column(one.spectrum.grid(), one.standard.as_deref());
+                uncertainty::detector::evaluate(&plan, &own, &one.spectrum)
+            });
+            let worth = worth.transpose();
             let uncertainty = match worth {
                 Ok(checked) => checked.map(|c| {
                     findings.extend(c.findings);

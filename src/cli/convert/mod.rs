@@ -220,7 +220,7 @@ fn in_file(mut finding: Finding, path: &str) -> Finding {
 }
 
 fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Done, Refused> {
-    let Measured { name, quantity, spectrum } = &item.measured;
+    let Measured { name, quantity, spectrum, standard } = &item.measured;
     let heading = if several { format!("{path} [{name}]") } else { path.to_owned() };
     let place = Location::default().in_file(path);
     let place = if several { place.of_item(name) } else { place };
@@ -229,7 +229,7 @@ fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Do
         finding: Box::new(Finding::error("P000", message).at(place.clone())),
     };
     let Checked { value: Converted { conversion: value, uncertainty }, mut findings } =
-        convert(job, name, *quantity, spectrum).map_err(|m| refuse(&m))?;
+        convert(job, name, *quantity, (spectrum, standard.as_deref())).map_err(|m| refuse(&m))?;
     // The steps of a tabulated illuminant are its definition, not a coarse measurement of it.
     findings.retain(|f| !(item.defined && f.code == "P003"));
     for finding in &mut findings {
@@ -247,7 +247,12 @@ fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Do
 }
 
 /// Converts, and refuses quantities that were asked for and do not follow.
-fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -> Result<Checked<Converted>, String> {
+fn convert(
+    job: &Job<'_>,
+    name: &str,
+    quantity: Quantity,
+    (spectrum, standard): (&Spectrum, Option<&[f64]>),
+) -> Result<Checked<Converted>, String> {
     let mut out = job.converter.convert(name, quantity, spectrum).map_err(|e| e.to_string())?;
     for wanted in &job.arguments.geometry.to {
         if out.value.absolute.iter().all(|f| f.quantity != *wanted) {
@@ -262,7 +267,9 @@ fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -
     let uncertainty = match &job.budget {
         None => None,
         Some(budget) => {
-            let found = uncertainty::evaluate(&job.converter, budget, quantity, spectrum).map_err(|e| e.to_string())?;
+            let budget = budget.with_column(spectrum.grid(), standard);
+            let found =
+                uncertainty::evaluate(&job.converter, &budget, quantity, spectrum).map_err(|e| e.to_string())?;
             out.findings.extend(found.findings);
             Some(found.value)
         }
