@@ -10,6 +10,7 @@ mod brdf;
 mod capture;
 mod compare;
 mod convert;
+mod correct;
 mod detector;
 mod image;
 mod lamp;
@@ -74,6 +75,8 @@ enum Command {
     Selfcheck(selfcheck::SelfcheckArgs),
     /// Photometers: f1', spectral mismatch factors for a set of lamps, their ranking.
     Detector(detector::DetectorArgs),
+    /// Raw spectra into corrected ones: dark signal, stray light, wavelengths, bandwidth, smoothing, resampling, with their uncertainty.
+    Correct(Box<correct::CorrectArgs>),
     /// Two measurements, each with its budget: what of their differences is significant.
     Compare(compare::CompareArgs),
     /// The embedded reference tables, with source, checksum and terms.
@@ -136,6 +139,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Trade(command) => trade::run(command, cli.talk),
         Command::Selfcheck(arguments) => selfcheck::run(&arguments, cli.talk),
         Command::Detector(arguments) => detector::run(&arguments, cli.talk),
+        Command::Correct(arguments) => correct::run(&arguments, cli.talk),
         Command::Compare(arguments) => compare::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),

@@ -2,6 +2,7 @@
 //! numbers that follow from the SI or from a standard's printed digits.
 
 mod contract;
+mod correct;
 mod envelope;
 mod exit_codes;
 mod inputs;
