@@ -12,6 +12,7 @@ mod compare;
 mod convert;
 mod correct;
 mod detector;
+mod flicker;
 mod image;
 mod lamp;
 mod notes;
@@ -77,6 +78,8 @@ enum Command {
     Detector(detector::DetectorArgs),
     /// Raw spectra into corrected ones: dark signal, stray light, wavelengths, bandwidth, smoothing, resampling, with their uncertainty.
     Correct(Box<correct::CorrectArgs>),
+    /// Light over time: percent flicker, flicker index, stroboscopic visibility (SVM), short-term flicker (Pst LM).
+    Flicker(flicker::FlickerArgs),
     /// Two measurements, each with its budget: what of their differences is significant.
     Compare(compare::CompareArgs),
     /// The embedded reference tables, with source, checksum and terms.
@@ -140,6 +143,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Selfcheck(arguments) => selfcheck::run(&arguments, cli.talk),
         Command::Detector(arguments) => detector::run(&arguments, cli.talk),
         Command::Correct(arguments) => correct::run(&arguments, cli.talk),
+        Command::Flicker(arguments) => flicker::run(&arguments, cli.talk),
         Command::Compare(arguments) => compare::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),

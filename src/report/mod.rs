@@ -17,6 +17,7 @@ pub mod correction;
 pub mod csv;
 pub mod detector;
 pub mod envelope;
+pub mod flicker;
 pub mod html;
 pub mod image;
 pub mod lamp;

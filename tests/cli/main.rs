@@ -5,6 +5,7 @@ mod contract;
 mod correct;
 mod envelope;
 mod exit_codes;
+mod flicker;
 mod inputs;
 mod outputs;
 mod quantities;
