@@ -958,6 +958,20 @@ LOOKUPS = [
         "columns": "atomic number; wavelength in standard air, nm",
         "note": "Strong lines between 250 and 1020 nm only; no intensities, which depend on the lamp.",
     },
+    {
+        "name": "ansi-c78-377",
+        "file": "ansi/c78_377.csv",
+        "title": "Chromaticity quadrangles of white LED products, their centres, and one-step MacAdam ellipses",
+        "standard": "ANSI C78.377-2008 Table 1 and Annex; the ellipses as lamp specifications of the ENERGY STAR programme print them for three steps",
+        "origin": "the digits of two public programs that agree in all 80 numbers of the quadrangles and centres common to both (a Python chromaticity plot and the LED binning of the Nimble library); the ellipses of one (a tolerance calculation for tunable white)",
+        "checked": "every corner has the colour temperature and Duv of the standard's definition (nominal temperature and tolerance, Duv of the target plus or minus 0.006) within its printed digits; the ellipses have one source and no check",
+        "licence": "published values, none stated",
+        "date": "2026-11-26",
+        "sha256": "3f5f8a4c11eab854654cc3d8c128c7519553c41455128ff1f894cf330de01574",
+        "rows": "one nominal correlated colour temperature each, K",
+        "columns": "centre x, y; corners x1, y1 to x4, y4 in order round the quadrangle; of the ellipse of one step half the long and the short axis in x, y, and the angle of the long axis to x in degrees",
+        "note": "No ellipse could be had for 3500, 4500 and 5700 K; those of IEC 60081 (g11, g12, g22) could not be had at all.",
+    },
 ]
 
 

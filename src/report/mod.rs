@@ -13,6 +13,7 @@ pub mod capture_lights;
 pub mod capture_page;
 pub mod compare;
 pub mod conversion;
+pub mod conversion_page;
 pub mod correction;
 pub mod csv;
 pub mod detector;

@@ -15,6 +15,7 @@ macro_rules! files {
 }
 
 const FILES: &[(&str, &str)] = files![
+    "ansi/c78_377.csv",
     "cie/daylight_s0_s1_s2.csv",
     "cie/illuminant_a.csv",
     "cie/illuminant_b.csv",

@@ -71,7 +71,7 @@ fn a_steady_flicker_has_the_severity_of_the_printed_filters_at_any_sampling_rate
         // The trapezoidal rule bends frequencies by (πf/rate)²/3.
         let bent = 2.0 * (PI * hz / rate).powi(2);
         assert!((low * (1.0 - bent)..=high * (1.0 + bent)).contains(&pst), "{hz} Hz at {rate}: {pst}, {low} to {high}");
-        assert_eq!(found.findings.iter().map(|f| f.code).collect::<Vec<_>>(), ["F004"]);
+        assert!(found.findings.iter().any(|f| f.code == "F004"), "a minute is less than three");
     }
 }
 
