@@ -63,8 +63,8 @@ fn rows(p: &Parts<'_>) -> Vec<(Measurand, String, &'static str)> {
     use Measurand as M;
     let quantity = p.conversion.quantity;
     let mut all = shown(quantity);
-    let more = (0..14).map(|k| (M::SpecialIndex(k), M::SpecialIndex(k).to_string(), ""));
-    all.extend(more.filter(|(m, ..)| *m != M::SpecialIndex(8)));
+    all.retain(|(m, ..)| !matches!(m, M::SpecialIndex(_)));
+    all.extend((0..14).map(|k| (M::SpecialIndex(k), M::SpecialIndex(k).to_string(), "")));
     all.extend(
         (0..RECEPTORS.len()).map(|k| (M::DaylightEfficacyRatio(k), M::DaylightEfficacyRatio(k).to_string(), "")),
     );
@@ -87,13 +87,19 @@ fn figures(p: &Parts<'_>) -> Section {
     let row = |(m, label, unit): (Measurand, String, &str)| {
         let value = value(m)?;
         let stated = p.uncertainty.and_then(|u| u.figure(m)).and_then(|f| f.stated);
+        // Ultraviolet that is less than its uncertainty would be a row of zeros.
+        if matches!(m, Measurand::Hazard(_)) && stated.is_some_and(|s| value.abs() < s.standard) {
+            return None;
+        }
+        // A unit is not broken at its stroke.
+        let unit = unit.replace('/', "/\u{2060}");
         Some(match stated {
-            None => [label, significant(value, 6), String::new(), String::new(), unit.to_owned()],
+            None => [label, significant(value, 6), String::new(), String::new(), unit],
             Some(s) => {
                 let [low, high] = s.expanded_95.map(|v| to_uncertainty(v, s.standard));
                 let standard =
                     if s.standard > 1e-12 * value.abs() { significant(s.standard, 2) } else { "0".to_owned() };
-                [label, to_uncertainty(value, s.standard), standard, format!("{low} to {high}"), unit.to_owned()]
+                [label, to_uncertainty(value, s.standard), standard, format!("{low} to {high}"), unit]
             }
         })
     };

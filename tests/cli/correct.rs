@@ -15,7 +15,7 @@ fn text(command: &mut assert_cmd::Command) -> String {
 fn what_was_done_stands_above_the_table_and_in_the_document() {
     let folder = Folder::new()
         .with("raw.csv", table("W/m2/nm", |w| (1.0 + (w - 580.0) / 1000.0).to_string()))
-        .with("dark.csv", table("W/m2/nm", |_| "0.25".into()));
+        .with("dark.csv", table("mW/m2/nm", |_| "250".into()));
     let run = |form: &[&str]| {
         let mut command = folder.run();
         command.args(["correct", "raw.csv", "--dark", "dark.csv", "--fwhm", "5", "--smooth", "5,2"]).args(form);
@@ -97,7 +97,8 @@ fn a_description_is_read_and_mistakes_have_their_place() {
         .with("raw.csv", table("W/m2/nm", |_| "1".into()))
         .with("c.toml", "[noise]\nread = 0.01\n[resampling]\nstep_nm = 10\nrange_nm = [400, 700]\n")
         .with("bad.toml", "[dark]\nfil = \"x\"\n")
-        .with("short.csv", "wavelength_nm,counts\n400,1\n410,2\n");
+        .with("flux.csv", "wavelength_nm,spectral flux [W/nm]\n400,1\n410,2\n")
+        .with("short.csv", "wavelength_nm,spectral irradiance [W/m2/nm]\n400,1\n410,2\n");
     let document = json(folder.run().args(["correct", "raw.csv", "--corrections", "c.toml"]));
     assert_eq!(document["results"][0]["wavelength_nm"].as_array().map(Vec::len), Some(31));
     assert!((number(&document, "standard_uncertainty.3") - 0.01).abs() < 1e-15);
@@ -109,6 +110,7 @@ fn a_description_is_read_and_mistakes_have_their_place() {
     assert!(failing(&["raw.csv", "--corrections", "bad.toml"]).contains("bad.toml:2:1: unknown field `fil`"));
     assert!(failing(&["raw.csv", "--dark", "short.csv"]).contains("a dark spectrum on 2 samples of 400–410 nm"));
     assert!(failing(&["raw.csv"]).contains("no correction asked for"));
+    assert!(failing(&["raw.csv", "--dark", "flux.csv"]).contains("irradiance, and the dark spectrum flux"));
     assert!(failing(&["raw.csv", "--smooth", "4,2"]).contains("expected an odd window"));
     assert!(failing(&["raw.csv", "--smooth", "4"]).contains("such as 7,2"));
     assert!(failing(&["raw.csv", "--smooth", "5,2", "-o", "raw.csv"]).contains("would overwrite an input"));

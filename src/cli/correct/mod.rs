@@ -12,11 +12,12 @@ use super::output::{self, Sink};
 use super::{Failure, Talk};
 use crate::constants::SecondRadiation;
 use crate::correction::description::{self, Description};
-use crate::correction::{self, lines::Element};
-use crate::finding::{Finding, Location};
+use crate::correction::{self, Plan, lines::Element};
+use crate::finding::{Checked, Finding, Location};
 use crate::report::correction::{self as report, Named};
 use crate::report::envelope::Envelope;
 use crate::spectrum::Quantity;
+use crate::spectrum::format::Measured;
 
 mod plan;
 
@@ -147,7 +148,7 @@ pub(super) fn run(arguments: &CorrectArgs, talk: Talk) -> Result<(), Failure> {
     };
     let title = description.title.clone();
     let mut loaded = plan::Loader::new(folder);
-    let plan = plan::build(&description, &arguments.asked, &mut loaded)?;
+    let plan = plan::build(&description, &arguments.asked, arguments.quantity, &mut loaded)?;
     let mut inputs: Vec<String> = arguments.files.clone();
     inputs.extend(loaded.inputs.iter().map(|i| i.path.clone()));
     inputs.extend(arguments.corrections.iter().map(|p| p.display().to_string()));
@@ -169,7 +170,7 @@ pub(super) fn run(arguments: &CorrectArgs, talk: Talk) -> Result<(), Failure> {
     notes.print(&loaded.findings);
     loaded.findings.drain(..).for_each(|f| envelope.finding(f));
     for path in &arguments.files {
-        let (measured, input, findings) = match all(path, arguments.quantity, SecondRadiation::default()) {
+        let (measured, input, mut findings) = match all(path, arguments.quantity, SecondRadiation::default()) {
             Ok(read) => read,
             Err(refused) => {
                 notes.refuse(&refused.message);
@@ -177,23 +178,19 @@ pub(super) fn run(arguments: &CorrectArgs, talk: Talk) -> Result<(), Failure> {
                 continue;
             }
         };
-        let mut findings: Vec<Finding> = findings;
         sources.push(input);
         let several = measured.len() > 1;
         for one in measured {
             let place = Location::default().in_file(path);
             let place = if several { place.of_item(&one.name) } else { place };
-            match correction::apply(&one.spectrum, one.standard.as_deref(), &plan) {
+            match corrected(one, path, &plan, loaded.dark) {
                 Ok(found) => {
                     findings.extend(found.findings.into_iter().map(|f| f.at(place.clone())));
-                    let timed = plan.integration_time.is_some();
-                    // Counts per second are no radiometric quantity any more.
-                    let quantity = if timed { Quantity::Relative } else { one.quantity };
-                    done.push(Named { path: path.clone(), name: one.name, quantity, corrected: found.value });
+                    done.push(found.value);
                 }
                 Err(why) => {
                     notes.refuse(&format!("{place}: {why}"));
-                    findings.push(Finding::error("X000", why.to_string()).at(place));
+                    envelope.finding(Finding::error("X000", why).at(place));
                 }
             }
         }
@@ -225,9 +222,27 @@ pub(super) fn run(arguments: &CorrectArgs, talk: Talk) -> Result<(), Failure> {
             "the corrected spectra have different wavelengths; expected --resample, one file at a time, or --json";
         return Err(Failure::Message(message.into()));
     }
-    let table =
-        if arguments.output.json { document } else { report::csv(&done, &sources, title.as_deref()).into_bytes() };
+    // A JSON document without results still says why; a table without any says nothing.
+    let table = match (arguments.output.json, done.is_empty()) {
+        (true, _) => document,
+        (false, true) => Vec::new(),
+        (false, false) => report::csv(&done, &sources, title.as_deref()).into_bytes(),
+    };
     sink.write_all(&table)?;
     sink.finish(!notes.failed || arguments.output.json)?;
     if notes.failed { Err(Failure::Reported) } else { Ok(()) }
+}
+
+/// One spectrum corrected; `dark` is what the dark spectrum is of.
+fn corrected(one: Measured, path: &str, plan: &Plan, dark: Option<Quantity>) -> Result<Checked<Named>, String> {
+    if let Some(dark) = dark.filter(|d| *d != one.quantity) {
+        return Err(format!(
+            "{}, and the dark spectrum {dark}; expected both of one quantity and unit (--quantity says it of both)",
+            one.quantity
+        ));
+    }
+    let found = correction::apply(&one.spectrum, one.standard.as_deref(), plan).map_err(|e| e.to_string())?;
+    // Counts per second are no radiometric quantity any more.
+    let quantity = if plan.integration_time.is_some() { Quantity::Relative } else { one.quantity };
+    Ok(found.map(|corrected| Named { path: path.to_owned(), name: one.name, quantity, corrected }))
 }

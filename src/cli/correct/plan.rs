@@ -35,11 +35,13 @@ pub(super) struct Loader {
     folder: PathBuf,
     pub(super) inputs: Vec<Input>,
     pub(super) findings: Vec<Finding>,
+    /// What the dark spectrum is of: subtracted it can only be from the same.
+    pub(super) dark: Option<Quantity>,
 }
 
 impl Loader {
     pub(super) fn new(folder: PathBuf) -> Self {
-        Self { folder, inputs: Vec::new(), findings: Vec::new() }
+        Self { folder, inputs: Vec::new(), findings: Vec::new(), dark: None }
     }
 
     /// A path as written in the description; one of the command line is relative to where it was typed.
@@ -47,8 +49,8 @@ impl Loader {
         if in_description { self.folder.join(file).display().to_string() } else { file.to_owned() }
     }
 
-    fn spectrum(&mut self, path: &str) -> Result<Measured, Failure> {
-        let read = single(path, None, Some(Quantity::Relative), SecondRadiation::default());
+    fn spectrum(&mut self, path: &str, quantity: Option<Quantity>) -> Result<Measured, Failure> {
+        let read = single(path, None, quantity, SecondRadiation::default());
         let found = read.map_err(|refused| Failure::Message(refused.message))?;
         self.inputs.push(found.input);
         // That values of a dark spectrum are below zero, or relative, is as it should be.
@@ -67,7 +69,14 @@ impl Loader {
 }
 
 /// The plan of a description, with what the command line asks for in place of the sections of the same subject.
-pub(super) fn build(described: &Description, asked: &Asked, files: &mut Loader) -> Result<Plan, Failure> {
+///
+/// `quantity` is what the user says that the spectra, and the dark one with them, are of.
+pub(super) fn build(
+    described: &Description,
+    asked: &Asked,
+    quantity: Option<Quantity>,
+    files: &mut Loader,
+) -> Result<Plan, Failure> {
     let dark = match (&asked.dark, &described.dark) {
         (Some(file), _) => Some((files.place(file, false), None)),
         (None, Some(d)) => Some((files.place(&d.file, true), d.time_s)),
@@ -76,7 +85,8 @@ pub(super) fn build(described: &Description, asked: &Asked, files: &mut Loader) 
     let dark = match dark {
         None => None,
         Some((path, time)) => {
-            let found = files.spectrum(&path)?;
+            let found = files.spectrum(&path, quantity)?;
+            files.dark = Some(found.quantity);
             Some(Dark { spectrum: found.spectrum, standard: found.standard, time_s: time.map(|t| t.0) })
         }
     };
@@ -133,7 +143,7 @@ fn wavelength(described: &Description, asked: &Asked, files: &mut Loader) -> Res
     known.extend(w.lines_nm.iter().map(|l| Line { element: None, wavelength_nm: l.0 }));
     known.sort_by(|a, b| a.wavelength_nm.total_cmp(&b.wavelength_nm));
     Ok(Some(LineLamp {
-        reading: files.spectrum(&path)?.spectrum,
+        reading: files.spectrum(&path, Some(Quantity::Relative))?.spectrum,
         lines: known,
         degree: w.degree,
         search_nm: w.search_nm.0,
