@@ -63,9 +63,14 @@ impl LineSpread {
         Ok(Self { offsets_nm, response })
     }
 
+    /// First and last offset, nm.
+    fn range_nm(&self) -> (f64, f64) {
+        (self.offsets_nm[0], self.offsets_nm[self.offsets_nm.len() - 1])
+    }
+
     /// Response at an offset; 0 beyond the points.
     fn at(&self, offset_nm: f64) -> f64 {
-        let (first, last) = (self.offsets_nm[0], self.offsets_nm[self.offsets_nm.len() - 1]);
+        let (first, last) = self.range_nm();
         if (first..=last).contains(&offset_nm) {
             interpolate::linear(&self.offsets_nm, &self.response, offset_nm)
         } else {
@@ -176,14 +181,26 @@ fn differences(steps: &[f64], coefficient: &dyn Fn(f64) -> f64) -> Operator {
 
 /// What a fine grid and a line-spread function make of each other.
 struct Reading {
-    /// From samples to the fine grid: a natural cubic spline.
-    up: Operator,
+    /// The wavelengths of the samples, and the fine grid, nm.
+    samples_nm: Vec<f64>,
+    fine_nm: Vec<f64>,
+    /// Places of the samples in the fine grid.
+    nodes: Vec<usize>,
     /// The instrument on the fine grid; each row sums to 1.
     read: Operator,
     /// Its transpose, over the sum of each of its rows.
     back: Operator,
-    /// Places of the samples in the fine grid.
-    nodes: Vec<usize>,
+}
+
+/// One iteration S · Rᵀ(M/(R S))/(Rᵀ 1), from the guess S.
+struct Pass {
+    guess: Vec<f64>,
+    /// R S.
+    read: Vec<f64>,
+    /// M/(R S).
+    ratio: Vec<f64>,
+    /// What S is multiplied by.
+    gain: Vec<f64>,
 }
 
 fn iterate(
@@ -192,13 +209,13 @@ fn iterate(
     most: usize,
     findings: &mut Vec<Finding>,
 ) -> Result<Deconvolved, Refused> {
-    let x = signal.wavelengths_nm().to_vec();
     let width_nm = spread.fwhm_nm();
+    let x = signal.wavelengths_nm();
     let step_nm = x.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
     if 2.0 * step_nm > width_nm * (1.0 + 1e-9) {
         return Err(Error::TooCoarse { width_nm, step_nm }.into());
     }
-    let reading = Reading::new(&x, spread, width_nm);
+    let reading = Reading::new(x, spread, width_nm);
     let negative = signal.values().iter().filter(|v| **v < 0.0).count();
     if negative > 0 {
         let message = format!(
@@ -209,43 +226,41 @@ fn iterate(
     let measured: Vec<f64> = signal.values().to_vec();
     let noise = signal.standard().filter(|u| u.iter().all(|u| *u > 0.0));
     let peak = measured.iter().copied().fold(0.0, f64::max);
-    let fine: Vec<f64> = reading.up.apply(&measured).into_iter().map(|v| v.max(0.0)).collect();
-    let mut found = fine.clone();
-    let mut passed = Vec::new();
-    // The residual of the guess `found` read again, at the samples.
-    let off = |found: &[f64]| -> Vec<f64> {
-        let again = reading.read.apply(found);
-        reading.nodes.iter().zip(&measured).map(|(n, m)| again[*n] - m.max(0.0)).collect()
+    let fine: Vec<f64> = reading.up(&measured).into_iter().map(|v| v.max(0.0)).collect();
+    // What is left of the reading when what was found is read again, at the samples.
+    let left = |read: &[f64]| -> Vec<f64> {
+        reading.nodes.iter().zip(&measured).map(|(n, m)| read[*n] - m.max(0.0)).collect()
     };
-    let within = |off: &[f64]| {
+    let within = |left: &[f64]| {
         noise.as_ref().map(|u| {
-            let chi: f64 = off.iter().zip(u).map(|(o, u)| (o / u).powi(2)).sum();
-            chi <= off.len() as f64
+            let chi: f64 = left.iter().zip(u).map(|(o, u)| (o / u).powi(2)).sum();
+            chi <= left.len() as f64
         })
     };
-    let mut residual = off(&found);
-    while passed.len() < most && within(&residual) != Some(true) {
-        passed.push(found.clone());
-        found = reading.improve(&found, &fine);
-        residual = off(&found);
-    }
+    let mut found = fine.clone();
+    let mut passes: Vec<Pass> = Vec::new();
+    let residual = loop {
+        let pass = reading.pass(found, &fine);
+        let residual = left(&pass.read);
+        if passes.len() == most || within(&residual) == Some(true) {
+            found = pass.guess;
+            break residual;
+        }
+        found = pass.guess.iter().zip(&pass.gain).map(|(s, g)| s * g).collect();
+        passes.push(pass);
+    };
     let pick = |all: &[f64]| reading.nodes.iter().map(|n| all[*n]).collect::<Vec<f64>>();
     signal.replace(pick(&found));
     signal.each_mode(|mode| {
-        let mut by_fine = reading.up.apply(mode);
-        by_fine.iter_mut().zip(&fine).for_each(|(d, f)| *d = if *f > 0.0 { *d } else { 0.0 });
-        let mut change = by_fine.clone();
-        for guess in &passed {
-            change = reading.derivative(guess, &fine, &change, &by_fine);
-        }
-        pick(&change)
+        let mut of_fine = reading.up(mode);
+        of_fine.iter_mut().zip(&fine).for_each(|(d, f)| *d = if *f > 0.0 { *d } else { 0.0 });
+        pick(&passes.iter().fold(of_fine.clone(), |change, pass| reading.derivative(pass, &change, &of_fine)))
     });
     let rms = (residual.iter().map(|r| r * r).sum::<f64>() / residual.len() as f64).sqrt();
-    let residual_of_peak = if peak > 0.0 { rms / peak } else { 0.0 };
     Ok(Deconvolved {
         fwhm_nm: width_nm,
-        iterations: passed.len(),
-        residual: residual_of_peak,
+        iterations: passes.len(),
+        residual: if peak > 0.0 { rms / peak } else { 0.0 },
         within_noise: within(&residual),
     })
 }
@@ -259,59 +274,62 @@ impl Reading {
             fine.extend((1..=parts).map(|k| w[0] + (w[1] - w[0]) * k as f64 / parts as f64));
             nodes.push(fine.len() - 1);
         }
-        let mut up = vec![vec![0.0; x.len()]; fine.len()];
-        let mut unit = vec![0.0; x.len()];
-        for k in 0..x.len() {
-            unit[k] = 1.0;
-            let slopes = interpolate::spline_slopes(x, &unit);
-            up.iter_mut().zip(&fine).for_each(|(row, at)| row[k] = interpolate::hermite(x, &unit, &slopes, *at));
-            unit[k] = 0.0;
-        }
         // Trapezoids over the fine grid; at the ends, where light from beyond is not known, the part that is counts as all.
         let n = fine.len();
         let cell = |j: usize| 0.5 * (fine[(j + 1).min(n - 1)] - fine[j.saturating_sub(1)]);
-        let rows: Vec<Vec<f64>> = (0..n)
-            .map(|i| {
-                let row: Vec<f64> = (0..n).map(|j| spread.at(fine[i] - fine[j]) * cell(j)).collect();
-                let sum: f64 = row.iter().sum();
-                // A spread that does not reach the range from here reads nothing but the place itself.
-                if sum > 0.0 {
-                    row.iter().map(|v| v / sum).collect()
-                } else {
-                    (0..n).map(|j| f64::from(u8::from(i == j))).collect()
+        let (low, high) = spread.range_nm();
+        let row = |i: usize| {
+            // Light of λ is read at λ + offset: what is read here is from here less the offsets.
+            let first = fine.partition_point(|w| *w < fine[i] - high);
+            let last = fine.partition_point(|w| *w <= fine[i] - low);
+            let weights: Vec<f64> = (first..last).map(|j| spread.at(fine[i] - fine[j]) * cell(j)).collect();
+            let sum: f64 = weights.iter().sum();
+            // A spread that does not reach the range from here reads nothing but the place itself.
+            if sum > 0.0 { (first, weights.iter().map(|v| v / sum).collect()) } else { (i, vec![1.0]) }
+        };
+        let rows: Vec<(usize, Vec<f64>)> = (0..n).map(row).collect();
+        let mut columns: Vec<(usize, Vec<f64>)> = vec![(0, Vec::new()); n];
+        for (i, (first, weights)) in rows.iter().enumerate() {
+            for (j, weight) in (*first..).zip(weights) {
+                let (start, column) = &mut columns[j];
+                if column.is_empty() {
+                    *start = i;
                 }
-            })
-            .collect();
-        let back = (0..n)
-            .map(|j| {
-                let column: Vec<f64> = rows.iter().map(|r| r[j]).collect();
-                let sum: f64 = column.iter().sum();
-                if sum > 0.0 { column.iter().map(|v| v / sum).collect() } else { column }
-            })
-            .collect();
-        Self { up: Operator::of_rows(up), read: Operator::of_rows(rows), back: Operator::of_rows(back), nodes }
-    }
-
-    /// S · Rᵀ(M/(R S))/(Rᵀ 1).
-    fn improve(&self, found: &[f64], measured: &[f64]) -> Vec<f64> {
-        let ratio: Vec<f64> =
-            self.read.apply(found).iter().zip(measured).map(|(q, m)| if *q > 0.0 { m / q } else { 0.0 }).collect();
-        found.iter().zip(self.back.apply(&ratio)).map(|(s, g)| s * g).collect()
-    }
-
-    /// The change of [`Reading::improve`] for changes of the guess and of the reading.
-    fn derivative(&self, found: &[f64], measured: &[f64], change: &[f64], of_measured: &[f64]) -> Vec<f64> {
-        let read = self.read.apply(found);
-        let of_read = self.read.apply(change);
-        let mut ratio = vec![0.0; read.len()];
-        let mut of_ratio = vec![0.0; read.len()];
-        for i in 0..read.len() {
-            if read[i] > 0.0 {
-                ratio[i] = measured[i] / read[i];
-                of_ratio[i] = (of_measured[i] - ratio[i] * of_read[i]) / read[i];
+                // Rows that leave this place out between others that do not.
+                column.resize(i - *start, 0.0);
+                column.push(*weight);
             }
         }
-        let (gain, of_gain) = (self.back.apply(&ratio), self.back.apply(&of_ratio));
-        (0..found.len()).map(|i| change[i] * gain[i] + found[i] * of_gain[i]).collect()
+        for (_, column) in &mut columns {
+            let sum: f64 = column.iter().sum();
+            column.iter_mut().for_each(|v| *v /= sum);
+        }
+        Self { samples_nm: x.to_vec(), fine_nm: fine, nodes, read: Operator::new(rows), back: Operator::new(columns) }
+    }
+
+    /// From samples to the fine grid: a natural cubic spline.
+    fn up(&self, samples: &[f64]) -> Vec<f64> {
+        let slopes = interpolate::spline_slopes(&self.samples_nm, samples);
+        self.fine_nm.iter().map(|at| interpolate::hermite(&self.samples_nm, samples, &slopes, *at)).collect()
+    }
+
+    fn pass(&self, guess: Vec<f64>, measured: &[f64]) -> Pass {
+        let read = self.read.apply(&guess);
+        let ratio: Vec<f64> = read.iter().zip(measured).map(|(q, m)| if *q > 0.0 { m / q } else { 0.0 }).collect();
+        let gain = self.back.apply(&ratio);
+        Pass { guess, read, ratio, gain }
+    }
+
+    /// The change of what a pass gives for changes of its guess and of the reading.
+    fn derivative(&self, pass: &Pass, change: &[f64], of_measured: &[f64]) -> Vec<f64> {
+        let of_read = self.read.apply(change);
+        let of_ratio: Vec<f64> = (0..of_read.len())
+            .map(|i| {
+                let q = pass.read[i];
+                if q > 0.0 { (of_measured[i] - pass.ratio[i] * of_read[i]) / q } else { 0.0 }
+            })
+            .collect();
+        let of_gain = self.back.apply(&of_ratio);
+        (0..change.len()).map(|i| change[i] * pass.gain[i] + pass.guess[i] * of_gain[i]).collect()
     }
 }

@@ -27,7 +27,7 @@ impl SecondOrder {
         let found: Vec<f64> = x.iter().zip(y).filter(doubtful).map(|(w, _)| *w).collect();
         let (first, last) = (found.first()?, found.last()?);
         let message = format!(
-            "{} samples between {first} and {last} nm are so low that a second order of 1 % of the light at half of the wavelength would be more than a tenth of them",
+            "{} samples between {first:.1} and {last:.1} nm are so low that a second order of 1 % of the light at half of the wavelength would be more than a tenth of them",
             found.len()
         );
         let hint =

@@ -15,7 +15,7 @@ use crate::correction::description::{self, Description};
 use crate::correction::{self, Plan, lines::Element};
 use crate::finding::{Checked, Finding, Location};
 use crate::report::correction::{self as report, Named};
-use crate::report::envelope::Envelope;
+use crate::report::envelope::{Envelope, Input};
 use crate::spectrum::Quantity;
 use crate::spectrum::format::Measured;
 
@@ -212,7 +212,9 @@ pub(super) fn run(arguments: &CorrectArgs, talk: Talk) -> Result<(), Failure> {
     for one in &done {
         envelope.result(&report::json(one))?;
     }
-    sources.extend(loaded.inputs);
+    // A lamp's own reading may be what is corrected.
+    let new: Vec<Input> = loaded.inputs.into_iter().filter(|i| !sources.contains(i)).collect();
+    sources.extend(new);
     sources.iter().for_each(|i| envelope.input(i.clone()));
     let document = envelope.end()?;
     let alike =
