@@ -88,12 +88,15 @@ pub(crate) fn pairs(text: &str, what: &str) -> Result<(Vec<f64>, Vec<f64>), Erro
     Ok((x, y))
 }
 
+/// First row, first column, and what stands between.
+type Rectangle = (Vec<f64>, Vec<f64>, DMatrix<f64>);
+
 /// Reads a CSV text of numbers between two axes: wavelengths in nm in the first row (after one cell) and in the first column, both
 /// ascending. Gives the first row, the first column and the matrix, row by row as in the text.
 ///
 /// # Errors
 /// A mistake with its line and column.
-pub(crate) fn rectangle(text: &str) -> Result<(Vec<f64>, Vec<f64>, DMatrix<f64>), Error> {
+pub(crate) fn rectangle(text: &str) -> Result<Rectangle, Error> {
     let whole = |message: String| Mistake { line: 1, column: 1, message };
     let mut lines = cells(text);
     let (line, header) = lines.next().ok_or_else(|| whole("found nothing; expected a matrix".into()))?;
