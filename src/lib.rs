@@ -7,6 +7,7 @@ pub mod cli;
 pub mod colorimetry;
 pub mod constants;
 pub mod conversion;
+pub mod correction;
 pub mod finding;
 pub mod geometry;
 pub mod illuminant;

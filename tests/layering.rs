@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules from the ground up. Those on one line do not import one another.
-const ORDER: [&[&str]; 17] = [
+const ORDER: [&[&str]; 18] = [
     &["finding", "mistake"],
     &["units", "constants"],
     &["math"],
@@ -19,6 +19,7 @@ const ORDER: [&[&str]; 17] = [
     &["colorimetry"],
     &["conversion"],
     &["uncertainty"],
+    &["correction"],
     &["image"],
     &["luminaire", "brdf"],
     &["capture", "render"],

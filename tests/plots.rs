@@ -84,6 +84,7 @@ fn chromaticity(diagram: Diagram) -> ChromaticityPanel {
             point("D65", 0.3127, 0.3290, true),
             point("laser", 0.08, 0.82, false),
         ],
+        regions: vec![vec![(0.37, 0.37), (0.39, 0.37), (0.39, 0.39), (0.37, 0.37)]],
     }
 }
 

@@ -85,6 +85,7 @@ pub(super) fn run(arguments: &CompareArgs, talk: Talk) -> Result<(), Failure> {
         };
         envelope.input(found.input);
         let (quantity, spectrum) = (found.measured.quantity, &found.measured.spectrum);
+        let budget = budget.with_column(spectrum.grid(), found.measured.standard.as_deref());
         let mut findings = found.findings;
         match uncertainty::evaluate(&converter, &budget, quantity, spectrum) {
             Ok(checked) => {

@@ -57,6 +57,18 @@ pub(super) struct DetectorArgs {
     output: Option<PathBuf>,
 }
 
+/// Names of which a second, third … of one spelling is numbered: factors are told by name.
+fn told_apart(names: impl Iterator<Item = String>) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for name in names {
+        let free = |n: &usize| !out.contains(&format!("{name} ({n})"));
+        let taken = out.contains(&name);
+        let number = (2..).find(free).unwrap_or(2);
+        out.push(if taken { format!("{name} ({number})") } else { name });
+    }
+    out
+}
+
 pub(super) fn run(arguments: &DetectorArgs, talk: Talk) -> Result<(), Failure> {
     let c2 = SecondRadiation::default();
     let budget = arguments.budget.as_deref().map(budget::read).transpose()?;
@@ -94,7 +106,7 @@ pub(super) fn run(arguments: &DetectorArgs, talk: Talk) -> Result<(), Failure> {
     let files: Vec<(&String, Option<Vec<Measured>>)> = arguments.files.iter().map(|path| (path, load(path))).collect();
     let Some(calibration) = calibration else { return Err(Failure::Reported) };
     let sources: Vec<&Spectrum> = lamps.iter().map(|l| &l.spectrum).collect();
-    let names: Vec<String> = lamps.iter().map(|l| l.name.clone()).collect();
+    let names = told_apart(lamps.iter().map(|l| l.name.clone()));
     let mut found = Vec::new();
     for (path, measured) in &files {
         for one in measured.iter().flatten() {
@@ -107,7 +119,11 @@ pub(super) fn run(arguments: &DetectorArgs, talk: Talk) -> Result<(), Failure> {
                 let message = format!("the responsivity covers {low}–{high} nm of 380–780 nm; it counts as 0 beyond");
                 findings.push(Finding::warning("D001", message));
             }
-            let worth = budget.as_ref().map(|b| uncertainty::detector::evaluate(&plan, b, &one.spectrum)).transpose();
+            let worth = budget.as_ref().map(|b| {
+                let own = b.with_column(one.spectrum.grid(), one.standard.as_deref());
+                uncertainty::detector::evaluate(&plan, &own, &one.spectrum)
+            });
+            let worth = worth.transpose();
             let uncertainty = match worth {
                 Ok(checked) => checked.map(|c| {
                     findings.extend(c.findings);
@@ -139,4 +155,15 @@ pub(super) fn run(arguments: &DetectorArgs, talk: Talk) -> Result<(), Failure> {
     sink.write_all(&plain)?;
     sink.finish(!notes.failed || arguments.json)?;
     if notes.failed { Err(Failure::Reported) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::told_apart;
+
+    #[test]
+    fn lamps_of_one_name_are_numbered() {
+        let names = ["lamp", "D65", "lamp", "lamp"].map(str::to_owned);
+        assert_eq!(told_apart(names.into_iter()), ["lamp", "D65", "lamp (2)", "lamp (3)"]);
+    }
 }

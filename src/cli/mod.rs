@@ -10,7 +10,9 @@ mod brdf;
 mod capture;
 mod compare;
 mod convert;
+mod correct;
 mod detector;
+mod flicker;
 mod image;
 mod lamp;
 mod notes;
@@ -74,6 +76,10 @@ enum Command {
     Selfcheck(selfcheck::SelfcheckArgs),
     /// Photometers: f1', spectral mismatch factors for a set of lamps, their ranking.
     Detector(detector::DetectorArgs),
+    /// Raw spectra into corrected ones: dark signal, stray light, wavelengths, bandwidth, smoothing, resampling, with their uncertainty.
+    Correct(Box<correct::CorrectArgs>),
+    /// Light over time: percent flicker, flicker index, stroboscopic visibility (SVM), short-term flicker (Pst LM).
+    Flicker(flicker::FlickerArgs),
     /// Two measurements, each with its budget: what of their differences is significant.
     Compare(compare::CompareArgs),
     /// The embedded reference tables, with source, checksum and terms.
@@ -136,6 +142,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Trade(command) => trade::run(command, cli.talk),
         Command::Selfcheck(arguments) => selfcheck::run(&arguments, cli.talk),
         Command::Detector(arguments) => detector::run(&arguments, cli.talk),
+        Command::Correct(arguments) => correct::run(&arguments, cli.talk),
+        Command::Flicker(arguments) => flicker::run(&arguments, cli.talk),
         Command::Compare(arguments) => compare::run(&arguments, cli.talk),
         Command::Tables(arguments) => tables::run(&arguments),
         Command::Completions { shell } => completions(shell),

@@ -15,5 +15,6 @@ pub mod reference;
 pub mod rgb;
 pub mod samples;
 pub mod tm30;
+pub mod tolerance;
 
 pub use observer::Observer;

@@ -2,7 +2,7 @@
 
 use super::figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
 use super::{Error, Plan, Settings, shape};
-use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb};
+use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb, tolerance};
 use crate::finding::{Checked, Finding};
 use crate::photometry::luminous::Luminous;
 use crate::photometry::{alpha_opic, hazard, mesopic, photon, transfer};
@@ -12,6 +12,8 @@ use crate::units::significant;
 
 /// A relative error bound from which a finding becomes a warning.
 const NOTABLE: f64 = 1e-3;
+/// Colour temperatures, K, of lights that are held against nominal whites of 2700 K to 6500 K.
+const NOMINAL_WHITE_K: std::ops::RangeInclusive<f64> = 2000.0..=10_000.0;
 /// Nearer than this to the switch of references, K, the choice between them hangs on the last digits of a measurement.
 const REFERENCE_SWITCH_K: f64 = 1.0;
 
@@ -82,6 +84,7 @@ pub(super) fn evaluate(
         xy: coloured.and_then(chromaticity::xy),
         uv_prime: coloured.and_then(chromaticity::uv_prime),
         cct: None,
+        tolerance: None,
         dominant: None,
         peak_wavelength_nm: None,
         centroid_wavelength_nm: None,
@@ -96,6 +99,8 @@ pub(super) fn evaluate(
     };
     if lit {
         colour(settings, plan, values, uv, &mut out, &mut findings);
+        let white = out.cct.filter(|c| NOMINAL_WHITE_K.contains(&c.kelvin));
+        out.tolerance = white.and(chromaticity::xy(xyz_1931)).and_then(tolerance::nearest);
     }
     if groups.rgb {
         out.rgb = rgb_figures(settings, xyz_1931, lit, &mut findings);

@@ -5,6 +5,7 @@ use crate::colorimetry::cri::Cri;
 use crate::colorimetry::dominant::Dominant;
 use crate::colorimetry::rgb::Colour;
 use crate::colorimetry::tm30::Tm30;
+use crate::colorimetry::tolerance::Tolerance;
 use crate::photometry::alpha_opic::AlphaOpic;
 use crate::photometry::hazard::Hazard;
 use crate::photometry::mesopic::Adaptation;
@@ -101,6 +102,8 @@ pub struct Conversion {
     pub uv_prime: Option<[f64; 2]>,
     /// Colour temperature and Duv (CIE 1931 observer).
     pub cct: Option<Cct>,
+    /// Where the light stands to the nearest nominal white (CIE 1931 observer); `None` without a colour temperature.
+    pub tolerance: Option<Tolerance>,
     /// Dominant wavelength and purity.
     pub dominant: Option<Dominant>,
     /// Wavelength of the largest sample, nm.

@@ -3,6 +3,7 @@
 
 pub mod contour;
 pub mod cubature;
+pub mod fft;
 pub mod interpolate;
 pub mod least_squares;
 pub mod noise;

@@ -6,10 +6,12 @@
 //! - [`photon`]: photon numbers, PAR and PPFD.
 //! - [`hazard`]: blue-light and actinic-UV weighting.
 //! - [`detector`]: f₁′ and spectral mismatch factors of photometers.
+//! - [`flicker`]: light over time.
 //! - [`transfer`]: geometry that turns one quantity into another.
 
 pub mod alpha_opic;
 pub mod detector;
+pub mod flicker;
 pub mod hazard;
 pub mod luminous;
 pub mod mesopic;

@@ -1,6 +1,7 @@
 //! The chromaticity panel: what it takes, its axes and points.
 
 use super::axis::{self, AXIS_TEXT, BELOW, MARGIN, Scale, TICK_TEXT};
+use super::clip;
 use super::horseshoe::{self, Map};
 use super::inset::{self, Inset};
 use super::labels::{Labels, Manner};
@@ -68,6 +69,8 @@ pub struct ChromaticityPanel {
     pub planck: Vec<PlanckPoint>,
     /// The chromaticities to show.
     pub points: Vec<MarkedPoint>,
+    /// Outlines of tolerances, as closed lines of x and y.
+    pub regions: Vec<Vec<(f64, f64)>>,
 }
 
 /// Size of the labels of points.
@@ -112,6 +115,7 @@ impl ChromaticityPanel {
         axis::grid(sheet, plot, (x, &x_ticks), (y, &y_ticks));
         let mut labels = Labels::new(plot.grown(-3.0));
         horseshoe::draw(sheet, self, &map, &mut labels);
+        regions(sheet, self, &map, plot);
         let place = match (beside, self.diagram) {
             (true, _) => {
                 let height = plot.height().min(1.35 * (room.x1 - plot.x1 - 16.0));
@@ -176,6 +180,16 @@ impl ChromaticityPanel {
             }
         }
         silent
+    }
+}
+
+/// The outlines of tolerances.
+pub(super) fn regions(sheet: &mut Sheet, panel: &ChromaticityPanel, map: &Map, plot: Rect) {
+    for region in &panel.regions {
+        let line: Vec<Point> = region.iter().map(|p| map.place(*p)).collect();
+        for part in clip::line(&line, plot) {
+            sheet.stroke(part, 1.0, DARK);
+        }
     }
 }
 

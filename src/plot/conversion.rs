@@ -2,7 +2,7 @@
 
 use crate::colorimetry::adaptation::Transform;
 use crate::colorimetry::observer::Observer;
-use crate::colorimetry::{cct, dominant, rgb};
+use crate::colorimetry::{cct, dominant, rgb, tolerance};
 use crate::constants::SecondRadiation;
 use crate::conversion::{Conversion, Settings};
 use crate::spectrum::{Quantity, Sampling, Spectrum};
@@ -161,7 +161,21 @@ pub fn chromaticity_panel(drawn: &[Drawn<'_>], diagram: Diagram) -> Chromaticity
             .collect(),
         planck: (0..=200).map(|i| planck(5.0 * f64::from(i))).collect(),
         points,
+        regions: Vec::new(),
     }
+}
+
+/// Steps of the ellipses that are drawn about nominal whites.
+const ELLIPSE_STEPS: f64 = 3.0;
+
+/// The quadrangles of ANSI C78.377 and ellipses of three MacAdam steps, as outlines of a chromaticity panel.
+#[must_use]
+pub fn tolerance_regions() -> Vec<Vec<(f64, f64)>> {
+    let quadrangle =
+        |n: &tolerance::Nominal| n.corners_xy.iter().chain(n.corners_xy.first()).copied().collect::<Vec<_>>();
+    let ellipse = |n: &tolerance::Nominal| n.ellipse.map(|e| e.outline(n.centre_xy, ELLIPSE_STEPS));
+    let all = tolerance::nominals().iter().flat_map(|n| std::iter::once(quadrangle(n)).chain(ellipse(n)));
+    all.map(|line| line.into_iter().map(|[x, y]| (x, y)).collect()).collect()
 }
 
 /// The TM-30 colour vector graphic; `None` where there are no TM-30 figures or a hue bin is empty.

@@ -93,6 +93,7 @@ impl Inset {
         }
         let mut labels = Labels::new(self.frame.grown(-3.0));
         self.locus(sheet, panel, &mut labels);
+        chromaticity::regions(sheet, panel, &self.map, self.frame);
         let silent = self.points(sheet, panel, &mut labels);
         sheet.frame(self.frame, 1.2, FRAME);
         sheet.frame(self.outline, 1.0, DARK);

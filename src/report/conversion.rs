@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::colorimetry::rgb::SPACES;
 use crate::colorimetry::tm30::Bin;
+use crate::colorimetry::tolerance::{Tolerance, UV_PRIME_STEP};
 use crate::conversion::{AbsoluteFigures, Conversion, Settings, XyzScale};
 use crate::photometry::photon::Photons;
 use crate::spectrum::Quantity;
@@ -162,6 +163,9 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
     if groups.colour {
         set("cct_k", number(c.cct.map(|v| v.kelvin)));
         set("duv", number(c.cct.map(|v| v.duv)));
+        if let Some(t) = &c.tolerance {
+            set("nominal_white", nominal_white(t));
+        }
         set("dominant_wavelength_nm", number(c.dominant.map(|v| v.wavelength_nm)));
         set("excitation_purity", number(c.dominant.map(|v| v.excitation_purity)));
     }
@@ -200,6 +204,18 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
     }
     set("integration", integration(c, settings));
     out
+}
+
+fn nominal_white(t: &Tolerance) -> Value {
+    let mut out = Map::new();
+    out.insert("nominal_cct_k".into(), t.nominal.cct_k.into());
+    out.insert("inside_quadrangle".into(), t.inside.into());
+    out.insert("delta_uv_prime".into(), t.delta_uv_prime.into());
+    out.insert("uv_prime_steps".into(), (t.delta_uv_prime / UV_PRIME_STEP).into());
+    if let Some(sdcm) = t.sdcm {
+        out.insert("sdcm".into(), sdcm.into());
+    }
+    out.into()
 }
 
 fn figures(

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::colorimetry::tolerance::{Tolerance, UV_PRIME_STEP};
 use crate::conversion::{AbsoluteFigures, Conversion, Settings};
 use crate::spectrum::Quantity;
 use crate::spectrum::integrate::Rule;
@@ -130,6 +131,9 @@ fn colour(out: &mut Lines, c: &Conversion, settings: &Settings) {
     } else if settings.groups.colour {
         out.line("CCT, Duv", "–");
     }
+    if let Some(t) = &c.tolerance {
+        out.line("nominal white", nominal_white(t));
+    }
     if let Some(d) = c.dominant {
         let (label, wavelength) = if d.wavelength_nm < 0.0 {
             ("complementary wavelength", -d.wavelength_nm)
@@ -143,6 +147,17 @@ fn colour(out: &mut Lines, c: &Conversion, settings: &Settings) {
         let note = if srgb.colour.out_of_gamut { " (outside the gamut, cut)" } else { "" };
         out.line("sRGB of the light", format!("#{:02x}{:02x}{:02x}{note}", r as u8, g as u8, b as u8));
     }
+}
+
+/// Where the light stands to the nearest nominal white.
+pub(super) fn nominal_white(t: &Tolerance) -> String {
+    let side = if t.inside { "inside" } else { "outside" };
+    let steps = t.sdcm.map_or(String::new(), |s| format!(", {s:.1} SDCM"));
+    let circle = t.delta_uv_prime / UV_PRIME_STEP;
+    format!(
+        "{:.0} K: {side} of the quadrangle{steps}, Δu′v′ {:.5} ({circle:.1} steps)",
+        t.nominal.cct_k, t.delta_uv_prime
+    )
 }
 
 fn rendition(out: &mut Lines, c: &Conversion) {

@@ -149,7 +149,7 @@ pub fn leading(u: &Uncertainty) -> Measurand {
 }
 
 /// Figures of the table for people, with label and unit.
-fn shown(quantity: Quantity) -> Vec<(Measurand, String, &'static str)> {
+pub(super) fn shown(quantity: Quantity) -> Vec<(Measurand, String, &'static str)> {
     use Measurand as M;
     let plain = |m: Measurand, unit| (m, m.to_string(), unit);
     let melanopic = RECEPTORS.iter().position(|r| *r == "melanopic").unwrap_or(0);

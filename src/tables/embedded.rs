@@ -15,6 +15,7 @@ macro_rules! files {
 }
 
 const FILES: &[(&str, &str)] = files![
+    "ansi/c78_377.csv",
     "cie/daylight_s0_s1_s2.csv",
     "cie/illuminant_a.csv",
     "cie/illuminant_b.csv",
@@ -43,6 +44,7 @@ const FILES: &[(&str, &str)] = files![
     "icnirp/blue_light_hazard.csv",
     "ies/ces99_1nm.csv",
     "mccree/rqe_1972.csv",
+    "nist/lines.csv",
     "refractive/ag.csv",
     "refractive/al.csv",
     "refractive/au.csv",

@@ -3,11 +3,14 @@
 //! `docs/uncertainty.md` explains the budget with examples; [`schema`] prints it as a JSON schema. Every number is a standard
 //! uncertainty (k = 1) or says what else it is; paths of tables are relative to the budget.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::table::{Covariance, Error as TableError, Table};
 use crate::mistake::{self, Mistake};
+use crate::spectrum::Grid;
 
 /// The contributions to the uncertainty of one measured spectrum.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
@@ -98,12 +101,20 @@ pub struct Noise {
     pub relative_table: Option<String>,
     /// A CSV file of wavelength (nm) and uncertainty in the samples' SI unit per nm.
     pub absolute_table: Option<String>,
+    /// As the column of standard uncertainties `u(…)` says that stands beside the samples in their file.
+    pub column: bool,
+    /// A CSV file of the covariance of the samples in their SI unit per nm squared: wavelengths (nm) in the first row and in the first
+    /// column. It stands alone in its table.
+    pub covariance: Option<String>,
     /// The relative table, once read.
     #[serde(skip)]
     pub relative_read: Option<Table>,
-    /// The absolute table, once read.
+    /// The absolute table, once read, or the column.
     #[serde(skip)]
     pub absolute_read: Option<Table>,
+    /// The covariance, once read.
+    #[serde(skip)]
+    pub covariance_read: Option<Covariance>,
 }
 
 /// A relative error that wavelengths share. One of `relative`, `table` and `covariance` is expected.
@@ -303,18 +314,35 @@ impl Budget {
             let Some(path) = path else { return Ok(None) };
             Table::parse(&text_of(path)?).map(Some).map_err(|error| Error::Table { path: path.clone(), error })
         };
+        let covariance = |path: &Option<String>| -> Result<Option<Covariance>, Error> {
+            let Some(path) = path else { return Ok(None) };
+            let read = Covariance::parse(&text_of(path)?);
+            read.map(Some).map_err(|error| Error::Table { path: path.clone(), error })
+        };
         for noise in &mut budget.noise {
             noise.relative_read = table(&noise.relative_table)?;
             noise.absolute_read = table(&noise.absolute_table)?;
+            noise.covariance_read = covariance(&noise.covariance)?;
         }
         for calibration in &mut budget.calibration {
             calibration.table_read = table(&calibration.table)?;
-            if let Some(path) = &calibration.covariance {
-                let read = Covariance::parse(&text_of(path)?);
-                calibration.covariance_read = Some(read.map_err(|error| Error::Table { path: path.clone(), error })?);
-            }
+            calibration.covariance_read = covariance(&calibration.covariance)?;
         }
         Ok(budget)
+    }
+
+    /// The budget of one spectrum: where noise is as a column beside the samples says, with that column, if there is one.
+    #[must_use]
+    pub fn with_column(&self, grid: &Grid, standard: Option<&[f64]>) -> Cow<'_, Self> {
+        match standard.filter(|_| self.noise.iter().any(|n| n.column)) {
+            None => Cow::Borrowed(self),
+            Some(standard) => {
+                let table = Table::of(grid, standard);
+                let mut own = self.clone();
+                own.noise.iter_mut().filter(|n| n.column).for_each(|n| n.absolute_read = Some(table.clone()));
+                Cow::Owned(own)
+            }
+        }
     }
 
     /// What types cannot say.
@@ -323,6 +351,15 @@ impl Budget {
             let start = text.match_indices(header).nth(index).map_or(0, |(at, _)| at);
             Err(Mistake::at(text, &(start..start), message))
         };
+        for (i, n) in self.noise.iter().enumerate() {
+            let alone = Noise { name: n.name.clone(), covariance: n.covariance.clone(), ..Noise::default() };
+            if n.covariance.is_some() && *n != alone {
+                return refuse("[[noise]]", i, "found covariance beside other noise; expected a [[noise]] of its own");
+            }
+            if n.column && n.absolute_table.is_some() {
+                return refuse("[[noise]]", i, "found column beside absolute_table; expected one of them");
+            }
+        }
         for (i, c) in self.calibration.iter().enumerate() {
             let given = usize::from(c.relative.is_some())
                 + usize::from(c.table.is_some())

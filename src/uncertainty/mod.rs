@@ -75,6 +75,11 @@ pub enum Error {
     /// Nothing in the budget.
     #[error("an empty budget; expected a contribution, such as [[noise]], [[calibration]] or [[scale]]")]
     Empty,
+    /// Noise as a column says that is not there.
+    #[error(
+        "the budget takes noise from a column of standard uncertainties ([[noise]] column); expected one beside the samples, headed u(…)"
+    )]
+    NoColumn,
     /// Nothing to err about.
     #[error("no sample of the spectrum is positive; expected a spectrum with light in it")]
     Dark,

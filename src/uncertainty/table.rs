@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::math::interpolate;
 use crate::mistake::Mistake;
+use crate::spectrum::Grid;
 
 /// What is wrong with a table, and where.
 pub type Error = Mistake;
@@ -18,7 +19,7 @@ pub struct Table {
     values: Vec<f64>,
 }
 
-/// A relative covariance between wavelengths.
+/// A covariance between wavelengths.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Covariance {
     wavelengths_nm: Vec<f64>,
@@ -55,34 +56,94 @@ fn ascending(line: u64, column: u64, before: Option<&f64>, found: f64) -> Result
     Err(Mistake { line, column, message: format!("found wavelength {found}; expected ascending wavelengths in nm") })
 }
 
+/// Reads a CSV text of two columns of numbers, the first ascending, the second not negative; a header row and lines with `#` may stand
+/// above. `what` says what both are.
+///
+/// # Errors
+/// A mistake with its line and column.
+pub(crate) fn pairs(text: &str, what: &str) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    let (mut x, mut y): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    for (index, (line, row)) in cells(text).enumerate() {
+        if index == 0 && row[0].1.parse::<f64>().is_err() {
+            continue;
+        }
+        let [first, second] = row[..] else {
+            let message = format!("found {} cells; expected two: {what}", row.len());
+            return Err(Mistake { line, column: 1, message });
+        };
+        let (at, value) = (number(line, first)?, number(line, second)?);
+        if x.last().is_some_and(|b| at <= *b) {
+            return Err(Mistake { line, column: first.0, message: format!("found {at}; expected ascending numbers") });
+        }
+        if value < 0.0 {
+            let message = format!("found `{value}`; expected a number that is not negative");
+            return Err(Mistake { line, column: second.0, message });
+        }
+        x.push(at);
+        y.push(value);
+    }
+    if x.len() < 2 {
+        return Err(Mistake { line: 1, column: 1, message: "found fewer than two rows; expected a table".into() });
+    }
+    Ok((x, y))
+}
+
+/// First row, first column, and what stands between.
+type Rectangle = (Vec<f64>, Vec<f64>, DMatrix<f64>);
+
+/// Reads a CSV text of numbers between two axes: wavelengths in nm in the first row (after one cell) and in the first column, both
+/// ascending. Gives the first row, the first column and the matrix, row by row as in the text.
+///
+/// # Errors
+/// A mistake with its line and column.
+pub(crate) fn rectangle(text: &str) -> Result<Rectangle, Error> {
+    let whole = |message: String| Mistake { line: 1, column: 1, message };
+    let mut lines = cells(text);
+    let (line, header) = lines.next().ok_or_else(|| whole("found nothing; expected a matrix".into()))?;
+    let mut columns = Vec::new();
+    for cell in &header[1..] {
+        let w = number(line, *cell)?;
+        ascending(line, cell.0, columns.last(), w)?;
+        columns.push(w);
+    }
+    let n = columns.len();
+    if n < 1 {
+        return Err(whole("found no wavelength in the first row; expected some".into()));
+    }
+    let (mut rows, mut numbers) = (Vec::new(), Vec::new());
+    for (line, row) in lines {
+        if row.len() != n + 1 {
+            let message = format!("found {} cells in row {}; expected {}", row.len(), rows.len() + 1, n + 1);
+            return Err(Mistake { line, column: 1, message });
+        }
+        let w = number(line, row[0])?;
+        ascending(line, row[0].0, rows.last(), w)?;
+        rows.push(w);
+        for cell in &row[1..] {
+            numbers.push(number(line, *cell)?);
+        }
+    }
+    if rows.len() < 2 {
+        return Err(whole(format!("found {} rows; expected at least two", rows.len())));
+    }
+    let matrix = DMatrix::from_row_slice(rows.len(), n, &numbers);
+    Ok((columns, rows, matrix))
+}
+
 impl Table {
     /// Reads a CSV text of two columns, wavelength in nm and standard uncertainty; a header row and lines with `#` may stand above.
     ///
     /// # Errors
     /// A mistake with its line and column.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let mut out = Self { wavelengths_nm: Vec::new(), values: Vec::new() };
-        for (index, (line, row)) in cells(text).enumerate() {
-            if index == 0 && row[0].1.parse::<f64>().is_err() {
-                continue;
-            }
-            let [wavelength, value] = row[..] else {
-                let message = format!("found {} cells; expected two: wavelength in nm, uncertainty", row.len());
-                return Err(Mistake { line, column: 1, message });
-            };
-            let (w, u) = (number(line, wavelength)?, number(line, value)?);
-            ascending(line, wavelength.0, out.wavelengths_nm.last(), w)?;
-            if u < 0.0 {
-                let message = format!("found `{u}`; expected an uncertainty that is not negative");
-                return Err(Mistake { line, column: value.0, message });
-            }
-            out.wavelengths_nm.push(w);
-            out.values.push(u);
-        }
-        if out.values.len() < 2 {
-            return Err(Mistake { line: 1, column: 1, message: "found fewer than two rows; expected a table".into() });
-        }
-        Ok(out)
+        let (wavelengths_nm, values) = pairs(text, "wavelength in nm, uncertainty")?;
+        Ok(Self { wavelengths_nm, values })
+    }
+
+    /// A column over the wavelengths of a grid; one value per wavelength.
+    #[must_use]
+    pub fn of(grid: &Grid, values: &[f64]) -> Self {
+        Self { wavelengths_nm: grid.wavelengths_nm().to_vec(), values: values.to_vec() }
     }
 
     /// The uncertainty at a wavelength, nm.
@@ -100,45 +161,25 @@ impl Table {
 }
 
 impl Covariance {
-    /// Reads a CSV text: wavelengths in nm in the first row (after one cell) and the first column, relative covariance between.
+    /// Reads a CSV text: wavelengths in nm in the first row (after one cell) and the first column, covariance between: relative, or in
+    /// the unit of the samples squared, as the budget has it.
     ///
     /// # Errors
     /// A mistake with its line and column: cells, order, a matrix that is not symmetric or has a negative variance beyond what
     /// printed digits make (0.1 % of the largest variance).
     pub fn parse(text: &str) -> Result<Self, Error> {
         let whole = |message: String| Mistake { line: 1, column: 1, message };
-        let mut rows = cells(text);
-        let (line, header) = rows.next().ok_or_else(|| whole("found nothing; expected a covariance matrix".into()))?;
-        let mut wavelengths_nm = Vec::new();
-        for cell in &header[1..] {
-            let w = number(line, *cell)?;
-            ascending(line, cell.0, wavelengths_nm.last(), w)?;
-            wavelengths_nm.push(w);
-        }
-        let n = wavelengths_nm.len();
-        if n < 2 {
-            return Err(whole(format!("found {n} wavelengths; expected at least two")));
-        }
-        let mut matrix = DMatrix::zeros(n, n);
-        let mut count = 0;
-        for (line, row) in rows {
-            let place = |column: u64, message: String| Mistake { line, column, message };
-            if row.len() != n + 1 || count == n {
-                let message =
-                    format!("found {} cells in row {}; expected {n} rows of {} cells", row.len(), count + 1, n + 1);
-                return Err(place(1, message));
-            }
-            if number(line, row[0])? != wavelengths_nm[count] {
-                let message = format!("found `{}`; expected {} as in the first row", row[0].1, wavelengths_nm[count]);
-                return Err(place(1, message));
-            }
-            for (c, cell) in row[1..].iter().enumerate() {
-                matrix[(count, c)] = number(line, *cell)?;
-            }
-            count += 1;
-        }
-        if count != n {
-            return Err(whole(format!("found {count} rows; expected {n}, one per wavelength of the first row")));
+        let (wavelengths_nm, rows, matrix) = rectangle(text)?;
+        if rows != wavelengths_nm {
+            let found = rows.iter().zip(&wavelengths_nm).find(|(r, c)| r != c);
+            return Err(whole(match found {
+                Some((r, c)) => format!("found {r} in the first column; expected {c} as in the first row"),
+                None => format!(
+                    "found {} rows; expected {}, one per wavelength of the first row",
+                    rows.len(),
+                    wavelengths_nm.len()
+                ),
+            }));
         }
         let largest = matrix.diagonal().max();
         let asymmetry = (&matrix - matrix.transpose()).amax();
@@ -192,7 +233,7 @@ mod tests {
         let t = Table::parse("# from a certificate\nnm;u\n400;0.02\n500;0.01").expect("a table");
         assert_eq!([300.0, 450.0, 900.0].map(|w| t.at(w)), [0.02, 0.015, 0.01]);
         let message = |text: &str| Table::parse(text).expect_err(text).to_string();
-        assert!(message("400,0.1\n390,0.1").starts_with("2:1: found wavelength 390"));
+        assert!(message("400,0.1\n390,0.1").starts_with("2:1: found 390; expected ascending"));
         assert!(message("400,0.1\n500,x").starts_with("2:5: found `x`"));
         assert!(message("400,0.1\n500,-1").starts_with("2:5: found `-1`"));
         assert!(message("400,0.1\n500").starts_with("2:1: found 1 cells"));
@@ -212,7 +253,10 @@ mod tests {
         let message = |text: &str| Covariance::parse(text).expect_err(text).to_string();
         assert!(message("nm,400,500\n400,1,2\n500,2,1\n").contains("eigenvalue"));
         assert!(message("nm,400,500\n400,1,0.5\n500,0.2,1\n").contains("transpose"));
-        assert!(message("nm,400,500\n400,1,0.5\n").contains("1 rows; expected 2"));
-        assert!(message("nm,400,500\n410,1,0.5\n500,0.5,1\n").starts_with("2:1: found `410`"));
+        assert!(message("nm,400,500\n400,1,0.5\n").contains("1 rows; expected at least two"));
+        assert!(
+            message("nm,400,500\n410,1,0.5\n500,0.5,1\n")
+                .starts_with("1:1: found 410 in the first column; expected 400")
+        );
     }
 }

@@ -2,11 +2,14 @@
 //! numbers that follow from the SI or from a standard's printed digits.
 
 mod contract;
+mod correct;
 mod envelope;
 mod exit_codes;
+mod flicker;
 mod inputs;
 mod outputs;
 mod quantities;
+mod report;
 mod trade;
 mod uncertainty;
 

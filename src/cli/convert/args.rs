@@ -30,6 +30,7 @@ Examples:
   photopic convert *.csv --json > results.json
   photopic convert lamp.csv --plot lamp.svg
   photopic convert lamp.csv --uncertainty budget.toml         (every figure with its uncertainty)
+  photopic convert lamp.csv --uncertainty budget.toml --report lamp.html
   cat lamp.csv | photopic convert - --csv")]
 pub(in crate::cli) struct ConvertArgs {
     /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
@@ -221,6 +222,12 @@ pub(super) struct Output {
     /// What to draw.
     #[arg(long, value_enum, default_value = "all", requires = "plot")]
     pub plot_kind: PlotKind,
+    /// Draw the quadrangles of ANSI C78.377 and ellipses of three MacAdam steps into the chromaticity diagram.
+    #[arg(long, requires = "plot")]
+    pub plot_tolerances: bool,
+    /// Write a report on one spectrum: a self-contained HTML page with figures, pictures, budget, method and findings.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
 }
 
 /// What `--plot` draws.

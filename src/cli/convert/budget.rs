@@ -3,7 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+use sha2::{Digest, Sha256};
+
 use crate::cli::Failure;
+use crate::report::envelope::Input;
 use crate::uncertainty::budget::{Budget, Error};
 
 /// Reads a budget; the tables that it names are relative to it.
@@ -17,4 +20,11 @@ pub(in crate::cli) fn read(path: &Path) -> Result<Budget, Failure> {
             error => format!("{}: {error}", path.display()),
         })
     })
+}
+
+/// A budget as an input of a report.
+pub(super) fn input(path: &Path) -> Result<Input, Failure> {
+    let bytes = fs::read(path).map_err(|e| Failure::Message(format!("{}: cannot be read: {e}", path.display())))?;
+    let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+    Ok(Input { path: path.display().to_string(), sha256: Some(sha256) })
 }

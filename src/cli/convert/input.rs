@@ -218,7 +218,7 @@ fn source(name: &str, c2: SecondRadiation) -> Result<Loaded, Refused> {
                 .hint("give it a level with --scale-to"),
         );
     }
-    let measured = Measured { name: source.name, quantity: source.quantity, spectrum: source.spectrum };
+    let measured = Measured { name: source.name, quantity: source.quantity, spectrum: source.spectrum, standard: None };
     // A blackbody is Planck's law, which our samples follow; all else is tabulated or made of tables.
     let defined = !measured.name.starts_with("blackbody");
     let items = vec![Item { measured, printed: Vec::new(), defined }];

@@ -116,6 +116,8 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
     };
     let mut notes = Notes::new(&arguments.files, talk);
     let mut kept = Vec::new();
+    let reports = arguments.output.report.is_some();
+    let (mut read, mut noticed) = (Vec::new(), Vec::new());
     for paths in arguments.files.chunks(INPUTS_AT_ONCE) {
         let mut opened: Vec<Result<Opened, Refused>> = Vec::with_capacity(paths.len());
         paths.par_iter().map(|path| open(&job, path, &notes.progress)).collect_into_vec(&mut opened);
@@ -142,6 +144,10 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
                         }
                     }
                     notes.print(&all);
+                    if reports {
+                        noticed.extend(all.iter().cloned());
+                        read.push(input.clone());
+                    }
                     all.into_iter().for_each(|f| writer.finding(f));
                     writer.input(input);
                 }
@@ -158,8 +164,16 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
     // A JSON document without results still says why; a table or a text without any says nothing.
     sink.finish(written > 0 || job.form == Form::Json)?;
     if let (Some(path), Some(format)) = (&arguments.output.plot, plot) {
-        let picture = picture::draw(&kept, job.converter.settings(), arguments.output.plot_kind, format)?;
+        let kind = (arguments.output.plot_kind, arguments.output.plot_tolerances);
+        let picture = picture::draw(&kept, job.converter.settings(), kind, format)?;
         output::write_file(path, &picture, &arguments.files)?;
+    }
+    if let Some(path) = &arguments.output.report {
+        if let Some(budget) = &arguments.uncertainty.budget {
+            read.push(budget::input(budget)?);
+        }
+        let page = picture::page(&kept, job.converter.settings(), &settings_json, &read, &noticed)?;
+        output::write_file(path, page.html().as_bytes(), &arguments.files)?;
     }
     if let (Some(path), Some(format)) = (&arguments.uncertainty.budget_plot, budget_plot) {
         output::write_file(path, &picture::draw_budget(&kept, format)?, &arguments.files)?;
@@ -220,7 +234,7 @@ fn in_file(mut finding: Finding, path: &str) -> Finding {
 }
 
 fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Done, Refused> {
-    let Measured { name, quantity, spectrum } = &item.measured;
+    let Measured { name, quantity, spectrum, standard } = &item.measured;
     let heading = if several { format!("{path} [{name}]") } else { path.to_owned() };
     let place = Location::default().in_file(path);
     let place = if several { place.of_item(name) } else { place };
@@ -229,25 +243,33 @@ fn item_done(job: &Job<'_>, path: &str, item: &Item, several: bool) -> Result<Do
         finding: Box::new(Finding::error("P000", message).at(place.clone())),
     };
     let Checked { value: Converted { conversion: value, uncertainty }, mut findings } =
-        convert(job, name, *quantity, spectrum).map_err(|m| refuse(&m))?;
+        convert(job, name, *quantity, (spectrum, standard.as_deref())).map_err(|m| refuse(&m))?;
     // The steps of a tabulated illuminant are its definition, not a coarse measurement of it.
     findings.retain(|f| !(item.defined && f.code == "P003"));
     for finding in &mut findings {
         finding.location = place.clone();
     }
     let bytes = render(job, path, &heading, (&value, uncertainty.as_ref()), &item.printed);
-    let wanted = job.arguments.output.plot.is_some() || job.arguments.uncertainty.budget_plot.is_some();
+    let reports = job.arguments.output.report.is_some();
+    let wanted = reports || job.arguments.output.plot.is_some() || job.arguments.uncertainty.budget_plot.is_some();
     let drawn = wanted.then(|| {
         // A column's header says less than the file's name, where the file holds nothing else.
         let file = std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy());
         let title = if several { name.clone() } else { file.into_owned() };
-        picture::Kept { name: title, conversion: value, spectrum: spectrum.clone(), uncertainty }
+        let result =
+            if reports { object(job, path, (&value, uncertainty.as_ref()), &item.printed).0 } else { Map::new() };
+        picture::Kept { name: title, conversion: value, spectrum: spectrum.clone(), uncertainty, result }
     });
     Ok(Done { bytes, findings, drawn })
 }
 
 /// Converts, and refuses quantities that were asked for and do not follow.
-fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -> Result<Checked<Converted>, String> {
+fn convert(
+    job: &Job<'_>,
+    name: &str,
+    quantity: Quantity,
+    (spectrum, standard): (&Spectrum, Option<&[f64]>),
+) -> Result<Checked<Converted>, String> {
     let mut out = job.converter.convert(name, quantity, spectrum).map_err(|e| e.to_string())?;
     for wanted in &job.arguments.geometry.to {
         if out.value.absolute.iter().all(|f| f.quantity != *wanted) {
@@ -262,12 +284,32 @@ fn convert(job: &Job<'_>, name: &str, quantity: Quantity, spectrum: &Spectrum) -
     let uncertainty = match &job.budget {
         None => None,
         Some(budget) => {
-            let found = uncertainty::evaluate(&job.converter, budget, quantity, spectrum).map_err(|e| e.to_string())?;
+            let budget = budget.with_column(spectrum.grid(), standard);
+            let found =
+                uncertainty::evaluate(&job.converter, &budget, quantity, spectrum).map_err(|e| e.to_string())?;
             out.findings.extend(found.findings);
             Some(found.value)
         }
     };
     Ok(out.map(|conversion| Converted { conversion, uncertainty }))
+}
+
+/// The object in `results[]`, and what the instrument printed beside ours.
+fn object(
+    job: &Job<'_>,
+    path: &str,
+    (c, uncertainty): (&Conversion, Option<&Uncertainty>),
+    printed: &[Printed],
+) -> (Map<String, Value>, Vec<Value>) {
+    let mut object = Map::new();
+    object.insert("path".into(), path.into());
+    object.extend(json_report::json(c, job.converter.settings()));
+    object.extend(uncertainty.map(|u| uncertainty_report::json(u, c)).unwrap_or_default());
+    let compared = json_report::instrument(&object, printed);
+    if !compared.is_empty() {
+        object.insert("instrument".into(), json!(compared));
+    }
+    (object, compared)
 }
 
 fn render(
@@ -282,11 +324,7 @@ fn render(
     if job.form == Form::Text && printed.is_empty() {
         return (text::conversion(heading, c, settings) + &uncertain.unwrap_or_default()).into_bytes();
     }
-    let mut object = Map::new();
-    object.insert("path".into(), path.into());
-    object.extend(json_report::json(c, settings));
-    object.extend(uncertainty.map(|u| uncertainty_report::json(u, c)).unwrap_or_default());
-    let compared = json_report::instrument(&object, printed);
+    let (object, compared) = object(job, path, (c, uncertainty), printed);
     match job.form {
         Form::Text => {
             let mut out = text::conversion(heading, c, settings);
@@ -294,12 +332,7 @@ fn render(
             out.push_str(&uncertain.unwrap_or_default());
             out.into_bytes()
         }
-        Form::Json => {
-            if !compared.is_empty() {
-                object.insert("instrument".into(), json!(compared));
-            }
-            serde_json::to_vec(&Value::Object(object)).unwrap_or_default()
-        }
+        Form::Json => serde_json::to_vec(&Value::Object(object)).unwrap_or_default(),
         Form::Csv => csv_row(&job.table.row(&object)),
     }
 }

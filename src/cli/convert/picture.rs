@@ -2,12 +2,18 @@
 
 use std::path::Path;
 
+use serde_json::{Map, Value};
+
 use super::args::PlotKind;
 use crate::cli::Failure;
 use crate::conversion::{Conversion, Settings};
-use crate::plot::conversion::{Drawn, chromaticity_panel, colour_vector_panel, spectrum_panel};
+use crate::finding::Finding;
+use crate::plot::conversion::{Drawn, chromaticity_panel, colour_vector_panel, spectrum_panel, tolerance_regions};
 use crate::plot::uncertainty::budget_panel;
-use crate::plot::{Diagram, Format, Panel, draw as draw_panels};
+use crate::plot::{ChromaticityPanel, Diagram, Format, Panel, SpectrumPanel, data_uri, draw as draw_panels};
+use crate::report::conversion_page::{self, Parts};
+use crate::report::envelope::Input;
+use crate::report::html::{Figure, Page};
 use crate::report::uncertainty::budgeted;
 use crate::spectrum::Spectrum;
 use crate::uncertainty::Uncertainty;
@@ -21,6 +27,8 @@ pub(super) struct Kept {
     pub conversion: Conversion,
     pub spectrum: Spectrum,
     pub uncertainty: Option<Uncertainty>,
+    /// Its object in the results, where a report is written.
+    pub result: Map<String, Value>,
 }
 
 /// The picture format that a file name asks for.
@@ -33,7 +41,12 @@ pub(in crate::cli) fn format_of(path: &Path) -> Result<Format, Failure> {
 }
 
 /// Draws the spectra kept.
-pub(super) fn draw(kept: &[Kept], settings: &Settings, kind: PlotKind, format: Format) -> Result<Vec<u8>, Failure> {
+pub(super) fn draw(
+    kept: &[Kept],
+    settings: &Settings,
+    (kind, tolerances): (PlotKind, bool),
+    format: Format,
+) -> Result<Vec<u8>, Failure> {
     let fail = |message: String| Failure::Message(format!("--plot: {message}"));
     if kept.is_empty() {
         return Err(fail("nothing to draw: no spectrum was converted in memory (rows of a table are streamed; save the wanted ones as columns)".into()));
@@ -47,10 +60,14 @@ pub(super) fn draw(kept: &[Kept], settings: &Settings, kind: PlotKind, format: F
         return Err(fail("spectra of different quantities do not share an axis; draw them one by one".into()));
     }
     let vector = |d: &Drawn<'_>| colour_vector_panel(d).map(Panel::from);
+    let chromaticity = |diagram: Diagram| -> Panel {
+        let regions = if tolerances { tolerance_regions() } else { Vec::new() };
+        ChromaticityPanel { regions, ..chromaticity_panel(&drawn, diagram) }.into()
+    };
     let panels: Vec<Panel> = match kind {
         PlotKind::Spectrum => vec![spectrum_panel(&drawn, settings).into()],
-        PlotKind::Chromaticity => vec![chromaticity_panel(&drawn, Diagram::Cie1976).into()],
-        PlotKind::ChromaticityXy => vec![chromaticity_panel(&drawn, Diagram::Cie1931).into()],
+        PlotKind::Chromaticity => vec![chromaticity(Diagram::Cie1976)],
+        PlotKind::ChromaticityXy => vec![chromaticity(Diagram::Cie1931)],
         PlotKind::Tm30 => {
             let [one] = drawn.as_slice() else {
                 return Err(fail(format!("the colour vector graphic is of one spectrum, not of {}", drawn.len())));
@@ -58,8 +75,7 @@ pub(super) fn draw(kept: &[Kept], settings: &Settings, kind: PlotKind, format: F
             vec![vector(one).ok_or_else(|| fail("this spectrum has no TM-30 figures".into()))?]
         }
         PlotKind::All => {
-            let mut panels: Vec<Panel> =
-                vec![spectrum_panel(&drawn, settings).into(), chromaticity_panel(&drawn, Diagram::Cie1976).into()];
+            let mut panels: Vec<Panel> = vec![spectrum_panel(&drawn, settings).into(), chromaticity(Diagram::Cie1976)];
             if let [one] = drawn.as_slice() {
                 panels.extend(vector(one));
             }
@@ -67,6 +83,51 @@ pub(super) fn draw(kept: &[Kept], settings: &Settings, kind: PlotKind, format: F
         }
     };
     draw_panels(&panels, None, format).map_err(|e| fail(e.to_string()))
+}
+
+/// The report on the one spectrum kept; `inputs` are what it rests on.
+pub(super) fn page(
+    kept: &[Kept],
+    settings: &Settings,
+    settings_json: &Value,
+    inputs: &[Input],
+    findings: &[Finding],
+) -> Result<Page, Failure> {
+    let fail = |message: String| Failure::Message(format!("--report: {message}"));
+    let [one] = kept else {
+        return Err(fail(format!("{} spectra in memory; expected one; choose with --select", kept.len())));
+    };
+    let drawn = [Drawn { name: &one.name, conversion: &one.conversion, spectrum: &one.spectrum }];
+    let chromaticity =
+        ChromaticityPanel { regions: tolerance_regions(), ..chromaticity_panel(&drawn, Diagram::Cie1976) };
+    let spectrum = SpectrumPanel { figures: Vec::new(), ..spectrum_panel(&drawn, settings) };
+    let mut panels: Vec<(Panel, &str)> = vec![
+        (spectrum.into(), "The spectrum, with V(λ) for comparison."),
+        (
+            chromaticity.into(),
+            "Chromaticity; outlines: quadrangles of ANSI C78.377 and, where known, ellipses of three MacAdam steps.",
+        ),
+    ];
+    panels.extend(colour_vector_panel(&drawn[0]).map(|p| (p.into(), "TM-30: shift of the sixteen hue bins.")));
+    if let Some(u) = &one.uncertainty {
+        let panel = budget_panel("", u, &budgeted(one.conversion.quantity));
+        panels.push((panel.into(), "The budget: share of each contribution in the variance."));
+    }
+    let figure = |(panel, caption): (Panel, &str)| -> Result<Figure, Failure> {
+        let file = draw_panels(&[panel], None, Format::Svg).map_err(|e| fail(e.to_string()))?;
+        Ok(Figure { uri: data_uri(&file, Format::Svg), alt: caption.to_owned(), caption: caption.to_owned() })
+    };
+    let figures = panels.into_iter().map(figure).collect::<Result<Vec<_>, _>>()?;
+    Ok(conversion_page::page(&Parts {
+        title: &one.name,
+        inputs,
+        settings: settings_json,
+        conversion: &one.conversion,
+        result: &one.result,
+        uncertainty: one.uncertainty.as_ref(),
+        figures: &figures,
+        findings,
+    }))
 }
 
 /// Draws the budget of the one spectrum kept.

@@ -129,7 +129,7 @@ fn row_done(job: &Job<'_>, path: &str, grid: &Arc<Grid>, scale: &Scale, row: Row
     };
     let spectrum = scale.apply(grid, row.values).map_err(|e| refuse(&e.to_string()))?;
     let Checked { value: Converted { conversion, uncertainty }, mut findings } =
-        convert(job, &row.name, scale.quantity, &spectrum).map_err(|m| refuse(&m))?;
+        convert(job, &row.name, scale.quantity, (&spectrum, None)).map_err(|m| refuse(&m))?;
     for finding in &mut findings {
         finding.location = place.clone();
     }

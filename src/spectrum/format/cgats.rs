@@ -300,6 +300,15 @@ impl Spectral {
         let others = (0..fields.len()).filter(|at| self.columns.binary_search(at).is_err() && Some(*at) != name);
         let metadata = others.map(|at| (table.fields[at].0.clone(), fields[at].text().into_owned())).collect();
         let name = name.map(|at| fields[at].text().into_owned()).unwrap_or_default();
-        Ok(Entry { name, spectrum, quantity: None, unit: None, printed: Vec::new(), metadata, location })
+        Ok(Entry {
+            name,
+            spectrum,
+            standard: None,
+            quantity: None,
+            unit: None,
+            printed: Vec::new(),
+            metadata,
+            location,
+        })
     }
 }

@@ -20,6 +20,8 @@ struct Column {
     place: Location,
     /// Which of the table's wavelength columns it belongs to.
     axis: usize,
+    /// It holds the standard uncertainties of the column before it.
+    uncertainty: bool,
     values: Vec<f64>,
 }
 
@@ -203,8 +205,14 @@ fn plan(
     let mut columns = Vec::new();
     let new_axis = |cell, unit, place| AxisColumn { cell, unit, place, axis: Axis::default(), rows: Vec::new() };
     let Some(record) = heading else {
-        let column =
-            |cell| Column { cell, heading: ValueHeading::default(), place: first.clone(), axis: 0, values: Vec::new() };
+        let column = |cell| Column {
+            cell,
+            heading: ValueHeading::default(),
+            place: first.clone(),
+            axis: 0,
+            uncertainty: false,
+            values: Vec::new(),
+        };
         axes.push(new_axis(0, AxisUnit::NotStated, first.clone()));
         return (axes, (1..width).map(column).collect());
     };
@@ -233,13 +241,21 @@ fn plan(
             findings.push(Finding::info("S009", message).at(place));
             continue;
         };
+        let follows = columns.last().is_some_and(|c: &Column| c.axis == axis && !c.uncertainty);
+        let uncertainty = follows && header::is_uncertainty(&field.text());
+        if uncertainty {
+            let message =
+                format!("the column `{}` holds the standard uncertainties of the one before it", field.text());
+            let hint = "a budget uses it with [[noise]] column = true";
+            findings.push(Finding::info("S019", message).at(place.clone()).hint(hint));
+        }
         let heading = header::value(&field.text());
-        if let Some(unit) = &heading.not_understood {
+        if let Some(unit) = heading.not_understood.as_ref().filter(|_| !uncertainty) {
             let finding =
                 Finding::warning("S006", format!("`{unit}` is no unit of a spectrum that is understood here"));
             findings.push(finding.at(place.clone()).hint("say the unit with --unit"));
         }
-        columns.push(Column { cell, heading, place, axis, values: Vec::new() });
+        columns.push(Column { cell, heading, place, axis, uncertainty, values: Vec::new() });
     }
     (axes, columns)
 }
@@ -388,10 +404,33 @@ impl Assembly<'_, '_> {
                 }
             };
             first.get_or_insert_with(|| Arc::clone(&grid));
-            let ValueHeading { name, quantity, unit, .. } = column.heading;
             let location = column.place;
+            if column.uncertainty {
+                let of = entries.last_mut().filter(|e: &&mut Entry| Arc::ptr_eq(e.spectrum.grid(), &grid));
+                match of.filter(|_| values.iter().all(|u| *u >= 0.0)) {
+                    Some(entry) => entry.standard = Some(values),
+                    None => {
+                        let message = format!(
+                            "the column `{}` was not read: standard uncertainties are not negative and as many as the samples before them",
+                            column.heading.name
+                        );
+                        self.findings.push(Finding::warning("S009", message).at(location));
+                    }
+                }
+                continue;
+            }
+            let ValueHeading { name, quantity, unit, .. } = column.heading;
             let spectrum = Spectrum::density(grid, values).map_err(|e| Error::new(location.clone(), e))?;
-            entries.push(Entry { name, spectrum, quantity, unit, printed: Vec::new(), metadata: Vec::new(), location });
+            entries.push(Entry {
+                name,
+                spectrum,
+                standard: None,
+                quantity,
+                unit,
+                printed: Vec::new(),
+                metadata: Vec::new(),
+                location,
+            });
         }
         if entries.is_empty() {
             let line = self.records.last().map_or(1, |r| r.line);

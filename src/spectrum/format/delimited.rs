@@ -137,6 +137,7 @@ fn read_rows(
         entries.push(Entry {
             name: row.name,
             spectrum,
+            standard: None,
             quantity: rows.quantity,
             unit: rows.unit.clone(),
             printed: Vec::new(),

@@ -99,6 +99,12 @@ pub(super) fn axis(text: &str) -> Option<AxisUnit> {
     }
 }
 
+/// Whether a heading is that of the standard uncertainties of the column before it: `u(…)`, `u`, `standard_uncertainty …`.
+pub(super) fn is_uncertainty(text: &str) -> bool {
+    let lower = text.trim().trim_matches('"').to_lowercase();
+    lower == "u" || lower.starts_with("u(") || lower.replace([' ', '-'], "_").starts_with("standard_uncertainty")
+}
+
 /// What a heading says about the values under it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct ValueHeading {

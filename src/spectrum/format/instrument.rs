@@ -198,6 +198,15 @@ impl Facts {
         let (unit, finding) = checked_unit(defined, &spectrum, &self.printed, place.clone());
         findings.push(finding);
         let quantity = unit.as_ref().map(|u| u.quantity);
-        Entry { name, spectrum, quantity, unit, printed: self.printed, metadata: self.metadata, location: place }
+        Entry {
+            name,
+            spectrum,
+            standard: None,
+            quantity,
+            unit,
+            printed: self.printed,
+            metadata: self.metadata,
+            location: place,
+        }
     }
 }

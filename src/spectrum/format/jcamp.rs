@@ -184,6 +184,7 @@ impl Block<'_> {
         Ok(Entry {
             name: self.get("TITLE").map(|r| r.value.to_owned()).unwrap_or_default(),
             spectrum,
+            standard: None,
             quantity,
             unit,
             printed: Vec::new(),

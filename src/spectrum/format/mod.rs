@@ -47,6 +47,7 @@
 //! | S016 | info | the same spectrum stands in the file more than once; which one was taken |
 //! | S017 | warning | a check figure in the file (first, largest, smallest value) does not agree with its data |
 //! | S018 | warning | the user's unit of wavelength replaces another one in the file |
+//! | S019 | info | a column of standard uncertainties (`u(…)`, `standard_uncertainty`) was read as those of the one before it |
 
 use std::fmt;
 use std::str::FromStr;
@@ -89,6 +90,8 @@ pub struct Entry {
     pub name: String,
     /// The samples in the file's own unit, wavelengths in nm.
     pub spectrum: Spectrum,
+    /// Standard uncertainty of each sample, in the same unit, where a column beside holds it.
+    pub standard: Option<Vec<f64>>,
     /// Quantity, where the file states one.
     pub quantity: Option<Quantity>,
     /// Unit of the samples, where the file states one.
@@ -135,6 +138,8 @@ pub struct Measured {
     pub quantity: Quantity,
     /// The samples; relative ones as the file gives them.
     pub spectrum: Spectrum,
+    /// Standard uncertainty of each sample, where the file has a column of it.
+    pub standard: Option<Vec<f64>>,
 }
 
 /// The formats that are read.

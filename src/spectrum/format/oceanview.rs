@@ -68,7 +68,7 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Checked<Spectrum
     let spectrum = samples.spectrum(&axis_unit(&metadata), &Location::at(units, 1), options, &mut findings)?;
     let (quantity, unit) = y_axis(&metadata);
     let name = metadata.iter().find(|(key, _)| key == "Data from").map(|(_, name)| name.clone()).unwrap_or_default();
-    let entry = Entry { name, spectrum, quantity, unit, printed: Vec::new(), metadata, location };
+    let entry = Entry { name, spectrum, standard: None, quantity, unit, printed: Vec::new(), metadata, location };
     let file = SpectrumFile { format: Format::OceanView, entries: vec![entry], metadata: Vec::new() };
     Ok(Checked { value: file, findings })
 }

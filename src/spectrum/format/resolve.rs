@@ -114,7 +114,12 @@ impl Scale {
     ///
     /// # Errors
     /// Where a value leaves the range of a double, or there are not as many values as wavelengths.
-    pub fn apply(&self, grid: &Arc<Grid>, mut values: Vec<f64>) -> Result<Spectrum, super::super::Error> {
+    pub fn apply(&self, grid: &Arc<Grid>, values: Vec<f64>) -> Result<Spectrum, super::super::Error> {
+        Spectrum::new(Arc::clone(grid), self.scaled(grid, values), self.sampling)
+    }
+
+    /// Numbers in the file's unit in SI.
+    fn scaled(&self, grid: &Grid, mut values: Vec<f64>) -> Vec<f64> {
         match &self.unit {
             Some(unit) if unit.photons => {
                 for (value, wavelength) in values.iter_mut().zip(grid.wavelengths_nm()) {
@@ -124,7 +129,7 @@ impl Scale {
             Some(unit) if unit.factor != 1.0 => values.iter_mut().for_each(|value| *value *= unit.factor),
             _ => {}
         }
-        Spectrum::new(Arc::clone(grid), values, self.sampling)
+        values
     }
 }
 
@@ -162,6 +167,10 @@ impl Entry {
         let spectrum = scale
             .apply(self.spectrum.grid(), self.spectrum.values().to_vec())
             .map_err(|error| Error::new(location, error))?;
-        Ok(Checked { value: Measured { name: self.name.clone(), quantity: scale.quantity, spectrum }, findings })
+        let standard = (self.standard.as_ref()).map(|u| scale.scaled(self.spectrum.grid(), u.clone()));
+        Ok(Checked {
+            value: Measured { name: self.name.clone(), quantity: scale.quantity, spectrum, standard },
+            findings,
+        })
     }
 }

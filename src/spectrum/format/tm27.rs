@@ -119,7 +119,16 @@ impl Reader<'_> {
         }
         let location = self.place(node);
         let spectrum = samples.in_nm(self.options, findings)?;
-        Ok(Entry { name: String::new(), spectrum, quantity, unit, printed: Vec::new(), metadata, location })
+        Ok(Entry {
+            name: String::new(),
+            spectrum,
+            standard: None,
+            quantity,
+            unit,
+            printed: Vec::new(),
+            metadata,
+            location,
+        })
     }
 
     fn sample(&self, node: Node<'_, '_>) -> Result<(f64, f64), Error> {

@@ -17,8 +17,9 @@ use super::Error;
 use super::budget::{Budget, Calibration, Distribution, Noise};
 use crate::finding::Finding;
 use crate::math::interpolate;
-use crate::math::random::Stream;
 use crate::spectrum::{Sampling, Spectrum};
+
+mod trial;
 
 /// One contribution of the budget for one spectrum.
 #[derive(Debug, Clone)]
@@ -38,6 +39,8 @@ enum Kind {
     Chain { relative: Vec<f64>, correlation: Vec<f64> },
     /// Relative modes, samples × modes.
     Modes(DMatrix<f64>),
+    /// Modes in the unit of the samples, samples × modes.
+    AbsoluteModes(DMatrix<f64>),
     /// One number with its standard uncertainty.
     Number(Number, f64, Distribution),
 }
@@ -85,18 +88,6 @@ pub(super) struct Model {
     pub inputs: Vec<Input>,
 }
 
-/// Single errors of a trial, standardised ones turned into amounts.
-#[derive(Debug, Clone, Copy)]
-struct Errors {
-    offset_nm: f64,
-    /// Scale and where it is right.
-    scale: (f64, f64),
-    bandwidth: f64,
-    linearity: f64,
-    stray_light: f64,
-    factor: f64,
-}
-
 impl Model {
     /// Compiles a budget for a spectrum; what there is to say goes to `findings`.
     pub(super) fn new(budget: &Budget, spectrum: &Spectrum, findings: &mut Vec<Finding>) -> Result<Self, Error> {
@@ -118,6 +109,9 @@ impl Model {
         if model.peak <= 0.0 {
             return Err(Error::Dark);
         }
+        if budget.noise.iter().any(|n| n.column && n.absolute_read.is_none()) {
+            return Err(Error::NoColumn);
+        }
         let inputs = model.inputs(budget, findings);
         if inputs.is_empty() {
             return Err(Error::Empty);
@@ -137,7 +131,13 @@ impl Model {
             let name = named(&noise.name, "noise", i, budget.noise.len());
             self.told_beyond(noise.relative_read.as_ref().map(super::table::Table::range_nm), &name, findings);
             self.told_beyond(noise.absolute_read.as_ref().map(super::table::Table::range_nm), &name, findings);
-            add(name, Kind::Noise(self.noise(noise)));
+            match &noise.covariance_read {
+                None => add(name, Kind::Noise(self.noise(noise))),
+                Some(covariance) => {
+                    self.told_beyond(Some(covariance.range_nm()), &name, findings);
+                    add(name, Kind::AbsoluteModes(covariance.modes_at(&self.wavelengths_nm)));
+                }
+            }
         }
         for (i, calibration) in budget.calibration.iter().enumerate() {
             let name = named(&calibration.name, "calibration", i, budget.calibration.len());
@@ -245,6 +245,7 @@ impl Model {
             Kind::Modes(modes) => {
                 Direction::Many(DMatrix::from_fn(y.len(), modes.ncols(), |r, c| modes[(r, c)] * y[r]))
             }
+            Kind::AbsoluteModes(modes) => Direction::Many(modes.clone()),
             Kind::Number(what, u, _) => match *what {
                 Number::Offset => along(&|i| -self.slope(i) * u),
                 Number::WavelengthScale { about_nm } => {
@@ -268,116 +269,8 @@ impl Model {
     pub(super) fn is_normal(&self) -> bool {
         self.inputs.iter().all(|i| match &i.kind {
             Kind::Together(_, d) | Kind::Number(_, _, d) => *d == Distribution::Normal,
-            Kind::Noise(_) | Kind::Chain { .. } | Kind::Modes(_) => true,
+            Kind::Noise(_) | Kind::Chain { .. } | Kind::Modes(_) | Kind::AbsoluteModes(_) => true,
         })
-    }
-
-    /// The erring spectrum of one trial, in place of what `out` held.
-    ///
-    /// `factors` is room for one number per sample, kept from trial to trial.
-    pub(super) fn trial(&self, stream: &mut Stream, factors: &mut Vec<f64>, out: &mut [f64]) {
-        let mut errors =
-            Errors { offset_nm: 0.0, scale: (0.0, 0.0), bandwidth: 0.0, linearity: 0.0, stray_light: 0.0, factor: 1.0 };
-        // Single numbers first: they act on the spectrum itself.
-        for input in &self.inputs {
-            if let Kind::Number(what, u, distribution) = input.kind {
-                let e = u * standardised(stream, distribution);
-                match what {
-                    Number::Offset => errors.offset_nm += e,
-                    Number::WavelengthScale { about_nm } => errors.scale = (e, about_nm),
-                    Number::Bandwidth { fwhm_nm } => {
-                        errors.bandwidth = ((fwhm_nm + e).powi(2) - fwhm_nm.powi(2)) / 12.0
-                    }
-                    Number::Linearity => errors.linearity += e,
-                    Number::StrayLight => errors.stray_light += e,
-                    Number::InverseSquare { value } => errors.factor *= (value / (value + e)).powi(2),
-                    Number::Factor => errors.factor *= 1.0 + e,
-                }
-            }
-        }
-        self.deform(&errors, out);
-        for input in &self.inputs {
-            match &input.kind {
-                Kind::Together(relative, distribution) => {
-                    let z = standardised(stream, *distribution);
-                    out.iter_mut().zip(relative).for_each(|(v, r)| *v *= 1.0 + z * r);
-                }
-                Kind::Chain { relative, correlation } => {
-                    let mut before = 0.0;
-                    each_normal(stream, out.len(), |i, z| {
-                        let r = correlation[i];
-                        before = r * before + (1.0 - r * r).sqrt() * z;
-                        out[i] *= 1.0 + before * relative[i];
-                    });
-                }
-                Kind::Modes(modes) => Self::modes(modes, stream, factors, out),
-                Kind::Noise(_) | Kind::Number(..) => {}
-            }
-        }
-        for input in &self.inputs {
-            if let Kind::Noise(standard) = &input.kind {
-                each_normal(stream, out.len(), |i, z| out[i] += z * standard[i]);
-            }
-        }
-    }
-
-    /// out · (1 + M z).
-    fn modes(modes: &DMatrix<f64>, stream: &mut Stream, factors: &mut Vec<f64>, out: &mut [f64]) {
-        factors.clear();
-        factors.resize(out.len(), 1.0);
-        each_normal(stream, modes.ncols(), |k, z| {
-            factors.iter_mut().zip(modes.column(k).iter()).for_each(|(f, m)| *f += z * m);
-        });
-        out.iter_mut().zip(factors).for_each(|(v, f)| *v *= *f);
-    }
-
-    /// The spectrum under errors of wavelength, bandwidth, linearity, stray light and scale.
-    fn deform(&self, e: &Errors, out: &mut [f64]) {
-        let (x, y) = (&self.wavelengths_nm, &self.values);
-        let still = e.offset_nm == 0.0 && e.scale.0 == 0.0;
-        let mut cell = 0;
-        for (i, out) in out.iter_mut().enumerate() {
-            let shifted = if still {
-                y[i]
-            } else {
-                let at = x[i] - e.offset_nm - e.scale.0 * (x[i] - e.scale.1);
-                let at = at.clamp(x[0], x[x.len() - 1]);
-                // Shifted wavelengths ascend: the cell is never far from the last.
-                while cell + 2 < x.len() && x[cell + 1] < at {
-                    cell += 1;
-                }
-                let h = x[cell + 1] - x[cell];
-                interpolate::hermite_cell(
-                    h,
-                    (at - x[cell]) / h,
-                    [y[cell], y[cell + 1]],
-                    [self.slopes[cell], self.slopes[cell + 1]],
-                )
-            };
-            let broadened = shifted + e.bandwidth * self.curvatures[i];
-            let read = broadened * (1.0 + e.linearity * (1.0 - y[i] / self.peak)) + e.stray_light * self.mean;
-            *out = e.factor * read;
-        }
-    }
-}
-
-/// Calls `f` with each index below `count` and a standard normal number.
-fn each_normal(stream: &mut Stream, count: usize, mut f: impl FnMut(usize, f64)) {
-    for i in (0..count).step_by(2) {
-        let [a, b] = stream.normals();
-        f(i, a);
-        if i + 1 < count {
-            f(i + 1, b);
-        }
-    }
-}
-
-/// A number of mean 0 and standard deviation 1.
-fn standardised(stream: &mut Stream, distribution: Distribution) -> f64 {
-    match distribution {
-        Distribution::Normal => stream.normals()[0],
-        Distribution::Rectangular => 3f64.sqrt() * (2.0 * stream.uniform() - 1.0),
-        Distribution::Triangular => 6f64.sqrt() * (stream.uniform() + stream.uniform() - 1.0),
     }
 }
 
