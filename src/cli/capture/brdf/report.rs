@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::develop::Darkroom;
-use super::photos::Photos;
 use crate::brdf::audit::{self, audit};
 use crate::brdf::fit::Fit;
 use crate::capture::brdf::{Scene, next_lights, reciprocity};
 use crate::cli::Failure;
+use crate::cli::capture::develop::Darkroom;
+use crate::cli::capture::photos::Photos;
 use crate::cli::output::write_file;
 use crate::plot::brdf::{Tint, albedo_panel, sphere_panel};
 use crate::plot::capture::{coverage_panel, halves_panel, maps_panels, response_panel};
