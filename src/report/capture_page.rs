@@ -156,7 +156,16 @@ fn coverage(p: &Parts<'_>) -> Option<Section> {
         r.phi_d,
         percent(p.more.reachable)
     );
-    let section = Section::new("Coverage").text(words).figures(p.pictures.coverage.clone());
+    let mut section = Section::new("Coverage").text(words);
+    if let Some(filling) = a.filling {
+        let [measured, inferred, _] = filling.counts();
+        section = section.text(format!(
+            "On request {inferred} bins were filled by {}, beside {measured} measured ones. They are marked as inferred wherever they \
+             are written; nobody measured them, and they have no standard error.",
+            filling.by
+        ));
+    }
+    let section = section.figures(p.pictures.coverage.clone());
     Some(section.table("What became of the pixels", head, rows))
 }
 

@@ -9,3 +9,4 @@ mod cli;
 mod lights;
 mod photographs;
 mod response;
+mod spheres;

@@ -12,13 +12,15 @@
 //! 1/24 of the Laplacian of the picture.
 //!
 //! - [`Scene::observe`]: the measurements of one picture, and how many pixels were masked for which reason.
-//! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere.
+//! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere;
+//!   [`Filled`]: bins that nobody measured, on request.
 //! - [`Scene::maps`]: a picture beside what a model says; [`reciprocity`]: of the measurements themselves; [`next_lights`]: what to photograph
 //!   next.
 //!
 //! Reference: W. Matusik et al., *A Data-Driven Reflectance Model*, ACM Trans. Graph. 22 (2003), for the principle.
 
 mod bins;
+mod fill;
 mod maps;
 mod next;
 mod observe;
@@ -26,6 +28,7 @@ mod reciprocity;
 mod scale;
 
 pub use bins::{Bin, Binned, bin};
+pub use fill::Filled;
 pub use maps::Maps;
 pub use next::{Next, next_lights};
 pub use observe::{Counts, Limits, Scene, Seen, View};

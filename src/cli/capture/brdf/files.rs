@@ -1,13 +1,13 @@
 //! The files of `capture brdf -o`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::message;
 use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::nodes;
 use crate::brdf::format::{csv, merl};
-use crate::brdf::table::Table;
-use crate::capture::brdf::{Binned, Observations};
+use crate::brdf::table::{HalfAngle, Known, Table};
+use crate::capture::brdf::Filled;
 use crate::cli::Failure;
 
 /// What a file is, by its ending.
@@ -34,21 +34,41 @@ impl Target {
     }
 }
 
-/// The bins as a file.
-pub(super) fn encode(target: Target, all: &Observations, binned: &Binned, path: &Path) -> Result<Vec<u8>, Failure> {
-    let table = binned.table(all).map_err(message)?;
+/// The file of a table, and that of the marks beside it where bins were filled and the format has no place for marks.
+pub(super) fn encode(
+    target: Target,
+    table: &HalfAngle,
+    filled: Option<&Filled>,
+    path: &Path,
+) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+    let table = filled.map_or(table, |f| &f.table);
     if target == Target::Merl {
-        return merl::write(&table).ok_or_else(|| {
-            let bands = all.channels.len();
+        let bytes = merl::write(table).ok_or_else(|| {
+            let bands = table.channels().len();
             Failure::Message(format!(
                 "{}: a MERL file has three channels; found {bands}; expected .csv or .alta",
                 path.display()
             ))
-        });
+        })?;
+        let beside = |f: &Filled| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(".mask");
+            (PathBuf::from(name), merl::mask(&f.table, &f.known))
+        };
+        return Ok([(path.to_owned(), bytes)].into_iter().chain(filled.map(beside)).collect());
     }
-    let points = nodes(&Table::HalfAngle(table)).map_err(message)?.value;
-    Ok(match target {
-        Target::Alta => alta::write(&points, Encoding::Text).value,
-        _ => csv::write(&points).value.into_bytes(),
-    })
+    let points = nodes(&Table::HalfAngle(table.clone())).map_err(message)?.value;
+    let bytes = match (target, filled) {
+        (Target::Alta, None) => alta::write(&points, Encoding::Text).value,
+        (Target::Alta, Some(_)) => {
+            let words = "an ALTA file has no place for what is inferred; expected .binary or .csv with --fill";
+            return Err(Failure::Message(format!("{}: {words}", path.display())));
+        }
+        (_, None) => csv::write(&points).value.into_bytes(),
+        (_, Some(f)) => {
+            let known: Vec<Known> = points.iter().map(|(i, o, _)| f.known[table.bin_of(i, o)]).collect();
+            csv::write_known(&points, &known).value.into_bytes()
+        }
+    };
+    Ok(vec![(path.to_owned(), bytes)])
 }

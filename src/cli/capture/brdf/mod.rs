@@ -2,6 +2,7 @@
 
 mod align;
 mod files;
+mod fill;
 mod report;
 mod run;
 
@@ -14,7 +15,6 @@ use super::develop::Darkroom;
 use super::photos::{Form, Given, Photos};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Selection, Weighting};
-use crate::brdf::table::Resolution;
 use crate::capture::brdf::{Limits, Observations, Scene, bin};
 use crate::capture::setup::Place;
 use crate::cli::brdf::Bins;
@@ -26,6 +26,7 @@ use crate::report::capture_develop::{self, Developed};
 use crate::report::{brdf_fit, capture_page};
 use align::align;
 use files::{Target, encode};
+use fill::{FillArgs, Filler};
 pub(super) use run::picture;
 use run::{Run, mask_of};
 
@@ -47,6 +48,7 @@ Examples:
   photopic capture brdf capture.toml -o ball.binary -o ball.toml --json
   photopic capture brdf capture.toml --report ball.html
   photopic capture brdf capture.toml --csv > bins.csv
+  photopic capture brdf capture.toml --fill model -o ball.binary
   photopic capture brdf capture.toml -m 'lambert + beckmann' -m phong --max-theta-o 70")]
 pub(in crate::cli) struct BrdfArgs {
     #[command(flatten)]
@@ -73,6 +75,8 @@ pub(in crate::cli) struct BrdfArgs {
     #[arg(long, value_name = "PICTURE")]
     mask: Option<PathBuf>,
     #[command(flatten)]
+    fill: FillArgs,
+    #[command(flatten)]
     form: Form,
     /// The bins as one table, with their standard errors.
     #[arg(long, conflicts_with = "json")]
@@ -81,7 +85,8 @@ pub(in crate::cli) struct BrdfArgs {
     #[arg(long, value_name = "FILE")]
     measurements: Option<PathBuf>,
     /// Files to write: .binary (MERL, bins without measurement −1), .csv or .alta (points at the middles of bins), .toml (the best
-    /// model as a material).
+    /// model as a material). With --fill also .binary.mask (the numbers of bins as in the table, then a byte per bin: 0 missing, 1
+    /// inferred, 2 measured), and a column `known` in .csv.
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// A report with pictures as one HTML file: coverage, lobes against data, photographs beside the model, energy and
@@ -108,6 +113,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         [] => MODELS.iter().map(|m| m.parse().map_err(message)).collect::<Result<Vec<Template>, _>>()?,
         given => given.to_vec(),
     };
+    let filler = Filler::open(&a.fill)?;
     let mut photos = Photos::open("capture brdf", &a.given, talk)?;
     let limits = Limits { max_theta_i_deg: a.max_theta_i, max_theta_o_deg: a.max_theta_o, every: a.every };
     let mut room = Darkroom::open(&mut photos)?;
@@ -132,7 +138,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
         write_file(path, capture_brdf::measurements(&run.seen, places, &all).as_bytes(), &read)?;
     }
-    let binned = bin(&all, a.resolution.map_or(Resolution::MERL, |r| r.0));
+    let binned = bin(&all, a.resolution.map_or(filler.resolution(), |r| r.0));
     let samples = all.samples().map_err(message)?;
     let options = Options { places: Some(a.subsample), ..Options::default() };
     let mut fits: Vec<Fit> = Vec::new();
@@ -152,16 +158,19 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         comparison: comparison.as_ref(),
         options: &options,
     });
+    let table = binned.table(&all).map_err(message)?;
+    let filling = filler.fill(&mut photos, &table, answer.as_ref(), &scale)?;
     let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
     for (path, target) in a.output.iter().zip(targets) {
-        let bytes = match (target, &answer) {
+        let files = match (target, &answer) {
             (Target::Material, Some(answer)) => {
-                brdf_fit::material_file(answer.path, &fits[brdf_fit::best(answer)], &options).into_bytes()
+                let file = brdf_fit::material_file(answer.path, &fits[brdf_fit::best(answer)], &options);
+                vec![(path.clone(), file.into_bytes())]
             }
             (Target::Material, None) => return Err(Failure::Message("found no fit to write".to_owned())),
-            _ => encode(target, &all, &binned, path)?,
+            _ => encode(target, &table, filling.as_ref().map(|f| &f.filled), path)?,
         };
-        write_file(path, &bytes, &read)?;
+        files.iter().try_for_each(|(path, bytes)| write_file(path, bytes, &read))?;
     }
     let selection = Selection { weighting: Weighting::Equal, ..Selection::default() };
     let mut settings = brdf_fit::settings(&options, &selection);
@@ -170,8 +179,14 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     settings["max_theta_o_deg"] = a.max_theta_o.into();
     settings["every"] = a.every.into();
     settings["resolution"] = json!([binned.resolution.theta_h, binned.resolution.theta_d, binned.resolution.phi_d]);
-    let shown =
-        capture_brdf::Answer { seen: &run.seen, scale: &scale, all: &all, binned: &binned, fits: answer.as_ref() };
+    let shown = capture_brdf::Answer {
+        seen: &run.seen,
+        scale: &scale,
+        all: &all,
+        binned: &binned,
+        filling: filling.as_ref(),
+        fits: answer.as_ref(),
+    };
     let mut object = capture_brdf::object(&shown);
     if a.report.is_some() || a.form.json {
         let mut more = report::more(&run.scene, run.size, &shown);

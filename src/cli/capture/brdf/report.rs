@@ -72,13 +72,15 @@ fn pictures(
     more: &mut More,
 ) -> Result<Pictures, Failure> {
     let names: Vec<String> = shown.all.channels.iter().map(ToString::to_string).collect();
-    let mut out = Pictures {
-        coverage: vec![figure(
-            coverage_panel(shown.binned).into(),
-            "Measured part of the azimuths φd, by half angle θh and difference angle θd.",
-        )?],
-        ..Pictures::default()
+    let filled = shown.filling.map(|f| &f.filled);
+    let caption = match filled {
+        None => "Measured part of the azimuths φd, by half angle θh and difference angle θd.",
+        Some(_) => {
+            "Measured part of the azimuths φd, by half angle θh and difference angle θd. Orange: nothing measured, inferred."
+        }
     };
+    let coverage = vec![figure(coverage_panel(shown.binned, filled).into(), caption)?];
+    let mut out = Pictures { coverage, ..Pictures::default() };
     if let Some(curves) = room.curves() {
         let channels: Vec<String> = (0..curves.len()).map(|c| channel_name(curves.len(), c).to_owned()).collect();
         let caption = "The response: exposure that belongs to a code.";
