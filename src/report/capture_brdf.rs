@@ -28,12 +28,14 @@ pub struct StackSeen {
     pub counts: Counts,
     /// Strength of the light per band, over the radiance of a sample of 1 at 1 s.
     pub strength: Vec<f64>,
+    /// Median of |measured/modelled − 1| of the best fit, where there is one.
+    pub deviation: Option<f64>,
 }
 
 /// What the absolute values rest on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Scale {
-    /// A diffuse sphere of known reflectance.
+    /// A diffuse object of known reflectance in the place of the other.
     Reference {
         /// Its reflectance.
         reflectance: Vec<f64>,
@@ -106,6 +108,8 @@ impl Filling {
 /// Everything there is to tell.
 #[derive(Debug, Clone, Copy)]
 pub struct Answer<'a> {
+    /// What the object is: `sphere`.
+    pub object: &'a str,
     /// The pictures.
     pub seen: &'a [StackSeen],
     /// What absolute values rest on.
@@ -135,7 +139,13 @@ pub(super) fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
 /// The result as JSON.
 #[must_use]
 pub fn object(a: &Answer<'_>) -> Value {
-    let stack = |s: &StackSeen| json!({"stack": s.name, "pixels": counts(&s.counts)});
+    let stack = |s: &StackSeen| {
+        let mut out = json!({"stack": s.name, "pixels": counts(&s.counts)});
+        if let Some(deviation) = s.deviation {
+            out["deviation_median_relative"] = deviation.into();
+        }
+        out
+    };
     let light = |s: &StackSeen| {
         let mut out = json!({"name": s.light, "strength": s.strength});
         match s.place {
@@ -157,6 +167,7 @@ pub fn object(a: &Answer<'_>) -> Value {
     let sum: Map<String, Value> = total(a.seen).into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect();
     let channels: Vec<String> = a.all.channels.iter().map(Channel::to_string).collect();
     let mut out = json!({
+        "object": a.object,
         "bands": channels,
         "scale": scale,
         "lights": a.seen.iter().map(light).collect::<Vec<_>>(),
@@ -259,14 +270,16 @@ pub fn text(a: &Answer<'_>) -> String {
     let mut out = String::new();
     let width = a.seen.iter().map(|s| s.name.chars().count()).max().unwrap_or(0).max(5);
     let _ = write!(out, "{:width$}", "stack");
-    for (name, _) in total(&[]) {
-        let _ = write!(out, "{:>16}", name.replace('_', " "));
+    // What no pixel is masked for is left out.
+    let shown: Vec<bool> = total(a.seen).iter().map(|(name, n)| *n > 0 || *name == "valid").collect();
+    for ((name, _), _) in total(&[]).iter().zip(&shown).filter(|(_, s)| **s) {
+        let _ = write!(out, "{:>17}", name.replace('_', " "));
     }
     out.push('\n');
     let row = |out: &mut String, name: &str, counts: &[(&str, usize)]| {
         let _ = write!(out, "{name:width$}");
-        for (_, n) in counts {
-            let _ = write!(out, "{n:>16}");
+        for ((_, n), _) in counts.iter().zip(&shown).filter(|(_, s)| **s) {
+            let _ = write!(out, "{n:>17}");
         }
         out.push('\n');
     };

@@ -1,12 +1,15 @@
-//! `capture brdf`: the BRDF of a photographed sphere.
+//! `capture brdf`: the BRDF of a photographed object of known shape.
 
 mod align;
 mod files;
 mod fill;
+mod mesh;
 mod report;
 mod run;
+mod shots;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 use serde_json::json;
@@ -15,7 +18,7 @@ use super::develop::Darkroom;
 use super::photos::{Form, Given, Photos};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Selection, Weighting};
-use crate::capture::brdf::{Limits, Observations, Scene, bin};
+use crate::capture::brdf::{Limits, Observations, Scene, apart, bin, deviations};
 use crate::capture::setup::Place;
 use crate::cli::brdf::Bins;
 use crate::cli::output::write_file;
@@ -38,10 +41,10 @@ const FITTED: usize = 40_000;
 /// The manifest, which pixels, which models, and the form of the answer.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
-The manifest states camera, sphere and lights; the stacks are exposures, or linear pictures, one each: EXR (as `capture merge` writes them,
+The manifest states camera, object (a sphere, cylinder, plane or mesh) and lights; the stacks are exposures, or linear pictures, one each: EXR (as `capture merge` writes them,
 with their standard errors and masks) or 16-bit linear TIFF. From exposures the noise of codes and, unless it is stated, the response are
-found first; from a [board] the camera, brought into line with the edge of the sphere; from a flat stack the vignetting. Without the radiance of a sample and the strengths of the lights, and without a
-reference sphere, the result is relative: it is scaled so that the median of f_r is 0.3/π, and says so.
+found first; from a [board] the camera, brought into line with the edge of a sphere; from a flat stack the vignetting. Without the radiance of a sample and the strengths of the lights, and without a
+reference of the object's shape, the result is relative: it is scaled so that the median of f_r is 0.3/π, and says so.
 
 Examples:
   photopic capture brdf capture.toml
@@ -68,6 +71,10 @@ pub(in crate::cli) struct BrdfArgs {
     /// Largest angle of the camera to the normal, degrees; beyond it is the silhouette.
     #[arg(long, value_name = "DEG", default_value_t = Limits::default().max_theta_o_deg)]
     max_theta_o: f64,
+    /// Of a mesh, the largest part of the hemisphere above a point (weighted by cosine) that the mesh itself may fill; beyond it light comes from there
+    /// too, and the pixel is masked.
+    #[arg(long, value_name = "SHARE", default_value_t = Limits::default().max_self_view)]
+    max_self_view: f64,
     /// Use every N-th pixel of every N-th row.
     #[arg(long, value_name = "N", default_value_t = 1)]
     every: usize,
@@ -105,6 +112,9 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
             return Err(Failure::Message(format!("{name} is {deg}; expected above 0 to below 90 degrees")));
         }
     }
+    if !(0.0..=1.0).contains(&a.max_self_view) {
+        return Err(Failure::Message(format!("--max-self-view is {}; expected 0 to 1", a.max_self_view)));
+    }
     if a.every == 0 || a.subsample == 0 {
         return Err(Failure::Message("found 0 for --every or --subsample; expected 1 or more".to_owned()));
     }
@@ -115,13 +125,18 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     };
     let filler = Filler::open(&a.fill)?;
     let mut photos = Photos::open("capture brdf", &a.given, talk)?;
-    let limits = Limits { max_theta_i_deg: a.max_theta_i, max_theta_o_deg: a.max_theta_o, every: a.every };
+    let limits = Limits {
+        max_theta_i_deg: a.max_theta_i,
+        max_theta_o_deg: a.max_theta_o,
+        every: a.every,
+        max_self_view: a.max_self_view,
+    };
     let mut room = Darkroom::open(&mut photos)?;
     let aligned = align(&mut photos, &mut room)?;
-    let mut scene = Scene::new(&photos.manifest, limits).map_err(message)?;
+    let mut scene = scene(&mut photos, limits)?;
     scene.placement_px = aligned.map_or(0.0, |e| e.standard_error_px);
-    let stated = photos.manifest.sphere.as_ref().and_then(|s| s.mask.clone());
-    let mask = a.mask.as_ref().map(|p| p.display().to_string()).or_else(|| stated.map(|m| photos.path(&m)));
+    let stated = photos.manifest.mask().map(|m| photos.path(m));
+    let mask = a.mask.as_ref().map(|p| p.display().to_string()).or(stated);
     let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
     let places = a.measurements.is_some().then(Vec::new);
     let camera = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
@@ -139,7 +154,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         write_file(path, capture_brdf::measurements(&run.seen, places, &all).as_bytes(), &read)?;
     }
     let binned = bin(&all, a.resolution.map_or(filler.resolution(), |r| r.0));
-    let samples = all.samples().map_err(message)?;
+    let samples = all.samples(run.scene.pixel_variance_sd).map_err(message)?;
     let options = Options { places: Some(a.subsample), ..Options::default() };
     let mut fits: Vec<Fit> = Vec::new();
     for template in &models {
@@ -158,6 +173,9 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         comparison: comparison.as_ref(),
         options: &options,
     });
+    if let Some(answer) = &answer {
+        disagreements(&mut photos, &mut run.seen, &all, &fits[brdf_fit::best(answer)]);
+    }
     let table = binned.table(&all).map_err(message)?;
     let filling = filler.fill(&mut photos, &table, answer.as_ref(), &scale)?;
     let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
@@ -175,11 +193,18 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let selection = Selection { weighting: Weighting::Equal, ..Selection::default() };
     let mut settings = brdf_fit::settings(&options, &selection);
     settings["weights"] = if all.has_errors() { "1/(c sigma)^2" } else { "equal" }.into();
+    if run.scene.pixel_variance_sd > 0.0 {
+        settings["pixel_variance_relative_sd"] = run.scene.pixel_variance_sd.into();
+    }
     settings["max_theta_i_deg"] = a.max_theta_i.into();
     settings["max_theta_o_deg"] = a.max_theta_o.into();
+    if run.scene.kind() == "mesh" {
+        settings["max_self_view"] = a.max_self_view.into();
+    }
     settings["every"] = a.every.into();
     settings["resolution"] = json!([binned.resolution.theta_h, binned.resolution.theta_d, binned.resolution.phi_d]);
     let shown = capture_brdf::Answer {
+        object: run.scene.kind(),
         seen: &run.seen,
         scale: &scale,
         all: &all,
@@ -207,6 +232,32 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     };
     capture_develop::add(&mut object, &developed);
     photos.print(&settings, &[object], &text, a.form.json, None)
+}
+
+/// Camera and object of the manifest.
+fn scene(photos: &mut Photos, limits: Limits) -> Result<Scene, Failure> {
+    match photos.manifest.mesh.clone() {
+        Some(stated) if photos.manifest.objects() == 1 => {
+            let mesh = Arc::new(mesh::Posed::open(photos, &stated)?);
+            Scene::of_surface(&photos.manifest, mesh, limits).map_err(message)
+        }
+        _ => Scene::new(&photos.manifest, limits).map_err(message),
+    }
+}
+
+/// Pictures that the best fit does not describe as it does the others.
+fn disagreements(photos: &mut Photos, seen: &mut [StackSeen], all: &Observations, best: &Fit) {
+    let counts: Vec<usize> = seen.iter().map(|s| s.counts.valid).collect();
+    let found = deviations(all, &counts, best.brdf.as_ref());
+    for n in apart(&found) {
+        let percent = 100.0 * found[n].unwrap_or(0.0);
+        let words =
+            format!("{} is {percent:.0} % off the best model in the median, far more than the others", seen[n].name);
+        let place = Location::default().of_item(&seen[n].name);
+        let hint = "is it the picture of this light, and is the light where it is stated?";
+        photos.findings.push(Finding::warning("K029", words).hint(hint).at(place));
+    }
+    seen.iter_mut().zip(found).for_each(|(s, d)| s.deviation = d);
 }
 
 /// One light tells little; pictures without usable pixels were told when they were met.

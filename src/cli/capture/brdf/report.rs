@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use super::shots::shots;
 use crate::brdf::audit::{self, audit};
-use crate::brdf::fit::Fit;
+use crate::brdf::fit::{Fit, wavelengths};
 use crate::capture::brdf::{Scene, next_lights, reciprocity};
+use crate::capture::manifest::Shows;
 use crate::cli::Failure;
 use crate::cli::capture::develop::Darkroom;
 use crate::cli::capture::photos::Photos;
@@ -50,8 +52,9 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     let pictures = pictures(photos, room, scene, shown, more)?;
     let Some(camera) = &photos.manifest.camera else { return Ok(()) };
+    let title = format!("BRDF of a photographed {}", scene.kind());
     let parts = Parts {
-        title: photos.manifest.title.as_deref().unwrap_or("BRDF of a photographed sphere"),
+        title: photos.manifest.title.as_deref().unwrap_or(&title),
         answer: shown,
         more,
         inputs: &photos.inputs,
@@ -91,7 +94,10 @@ fn pictures(
         let caption = format!("Bins with φd near 90° and {}, band {name}.", fit.template);
         out.lobes.push(figure(halves_panel(shown.binned, fit.brdf.as_ref(), band, name).into(), &caption)?);
     }
-    let tint = Tint::of_channels(names.len());
+    let tint = match wavelengths(&shown.all.channels) {
+        Some(nm) => Tint::of_wavelengths(&nm),
+        None => Tint::of_channels(names.len()),
+    };
     let energy = "Albedo of the best model over the angle of incidence; above 1 it reflects more than arrives.";
     out.energy.push(figure(albedo_panel(fit.brdf.as_ref(), &names).into(), energy)?);
     let sphere = "The best model as a sphere under a small lamp.";
@@ -112,10 +118,9 @@ fn maps(
     tint: &Tint,
     more: &mut More,
 ) -> Result<Vec<Figure>, Failure> {
-    let Some(stack) = photos.manifest.stack.iter().find(|s| s.name == seen.name).cloned() else {
-        return Ok(Vec::new());
-    };
-    let (radiance, _) = room.picture(photos, &stack)?;
+    let shots = shots(&photos.manifest, Shows::Object)?;
+    let Some(shot) = shots.iter().find(|s| s.name == seen.name) else { return Ok(Vec::new()) };
+    let (radiance, _) = shot.picture(photos, room)?;
     // The values of a relative result were multiplied by the factor: the lights are weaker by it.
     let strength: Vec<f64> = seen.strength.iter().map(|s| s / factor).collect();
     let Some(maps) = scene.maps(&radiance, seen.place, &strength, fit.brdf.as_ref(), SIDE) else {

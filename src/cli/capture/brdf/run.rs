@@ -1,6 +1,7 @@
 //! The measurements of a run: strengths of the lights, and what each picture gives.
 
 use super::message;
+use super::shots::{Shot, shots};
 use crate::capture::brdf::{Counts, Observations, Scene, Seen, reference_factor_sd, strength_from};
 use crate::capture::manifest::{Exposure, Shows, Stack};
 use crate::capture::photo::exif_time_s;
@@ -42,16 +43,13 @@ impl Run {
     /// The strengths of all lights: from the reference, as stated, or all alike.
     pub(super) fn strengths(&mut self, photos: &mut Photos) -> Result<Scale, Failure> {
         let lights = photos.manifest.light.clone();
-        let used = |light: &Light, photos: &Photos| {
-            let of = |s: &Stack| s.shows == Shows::Object && light_of(s) == light.name;
-            photos.manifest.stack.iter().any(of)
-        };
+        let of_object = shots(&photos.manifest, Shows::Object)?;
         if let Some(reference) = photos.manifest.reference.clone() {
             let (mut uneven, mut light_sd) = (0.0_f64, 0.0_f64);
+            let of_reference = shots(&photos.manifest, Shows::Reference)?;
             for light in &lights {
-                let of = |s: &&Stack| s.shows == Shows::Reference && light_of(s) == light.name;
-                let Some(stack) = photos.manifest.stack.iter().find(of).cloned() else {
-                    if used(light, photos) {
+                let Some(shot) = of_reference.iter().find(|s| s.light == light.name) else {
+                    if of_object.iter().any(|s| s.light == light.name) {
                         return Err(Failure::Message(format!(
                             "found no stack that shows the reference under light {}; expected one for each light",
                             light.name
@@ -60,7 +58,7 @@ impl Run {
                     self.strengths.push(vec![1.0]);
                     continue;
                 };
-                let (picture, name) = self.room.picture(photos, &stack)?;
+                let (picture, name) = shot.picture(photos, &mut self.room)?;
                 let mut seen = Observations::new(picture.channels);
                 let ones = vec![1.0; picture.channels];
                 let counts = self
@@ -70,7 +68,7 @@ impl Run {
                 let Some(strength) = strength_from(&seen, &reference) else {
                     let why =
                         if seen.is_empty() { counts.why() } else { "its reflectances are not as many as its bands" };
-                    return Err(message(Error::Nothing { stack: stack.name, why: why.to_owned() }));
+                    return Err(message(Error::Nothing { stack: shot.name.clone(), why: why.to_owned() }));
                 };
                 uneven = uneven.max(strength.deviation_rms);
                 light_sd = light_sd.max(strength.relative_errors.iter().copied().fold(0.0, f64::max));
@@ -108,41 +106,47 @@ impl Run {
 
     /// Measures all stacks of the object; those that cannot be used are left out.
     pub(super) fn observe(&mut self, photos: &mut Photos) -> Result<(), Failure> {
-        let stacks: Vec<Stack> = photos.manifest.stack.iter().filter(|s| s.shows == Shows::Object).cloned().collect();
-        if stacks.is_empty() {
+        let shots = shots(&photos.manifest, Shows::Object)?;
+        if shots.is_empty() {
             let words = "found no [[stack]] of the object in the manifest; expected one per light";
             return Err(Failure::Message(words.to_owned()));
         }
-        for stack in &stacks {
+        for shot in &shots {
             let lights = &photos.manifest.light;
-            let wanted = light_of(stack);
-            let Some(number) = lights.iter().position(|l| l.name == wanted) else {
-                let words =
-                    format!("stack {}: found no [[light]] called {wanted}; expected `light` to name one", stack.name);
+            let Some(number) = lights.iter().position(|l| l.name == shot.light) else {
+                let (name, wanted) = (&shot.name, &shot.light);
+                let words = format!("stack {name}: found no [[light]] called {wanted}; expected `light` to name one");
                 return Err(Failure::Message(words));
             };
             let place = lights[number].place;
             // A mistake in the set-up ends the run; a picture that is of no use does not.
-            let (picture, name) = match self.room.picture(photos, stack) {
+            let (picture, name) = match shot.picture(photos, &mut self.room) {
                 Ok(found) => found,
-                Err(failure) if stacks.len() > 1 => {
-                    photos.left_out(&stack.name, &failure);
+                Err(failure) if shots.len() > 1 => {
+                    photos.left_out(&shot.name, &failure);
                     continue;
                 }
                 Err(failure) => return Err(failure),
             };
-            if let Err(failure) = self.one(stack, &name, &picture, place, number) {
+            if self.all.is_none() {
+                let nm = photos.manifest.wavelengths_nm();
+                let narrow = (!nm.is_empty()).then(|| Observations::of_wavelengths(&nm));
+                self.all = Some(narrow.unwrap_or_else(|| Observations::new(picture.channels)));
+            }
+            if let Err(failure) = self.one(shot, &name, &picture, place, number) {
                 match failure {
-                    Error::Nothing { .. } if stacks.len() > 1 => photos.left_out(&stack.name, &message(failure)),
+                    Error::Nothing { .. } if shots.len() > 1 => photos.left_out(&shot.name, &message(failure)),
                     _ => return Err(Failure::Message(format!("{name}: {failure}"))),
                 }
             }
         }
+        // Without a measurement there is no result.
+        self.all.take_if(|all| all.is_empty());
         Ok(())
     }
 
-    fn one(&mut self, stack: &Stack, name: &str, picture: &Radiance, place: Place, light: usize) -> Result<(), Error> {
-        let all = self.all.get_or_insert_with(|| Observations::new(picture.channels));
+    fn one(&mut self, shot: &Shot, name: &str, picture: &Radiance, place: Place, light: usize) -> Result<(), Error> {
+        let Some(all) = &mut self.all else { return Ok(()) };
         if all.channels.len() != picture.channels {
             let expected = format!("{} channel(s)", all.channels.len());
             return Err(Error::Size { name: name.to_owned(), found: picture.size(), expected });
@@ -159,26 +163,19 @@ impl Run {
         };
         let counts: Counts = self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut visit)?;
         self.size = (picture.width, picture.height);
-        if all.is_empty() {
-            self.all = None;
-        }
         self.seen.push(StackSeen {
-            name: stack.name.clone(),
-            light: light_of(stack).to_owned(),
+            name: shot.name.clone(),
+            light: shot.light.clone(),
             place,
             counts,
             strength,
+            deviation: None,
         });
         if counts.valid == 0 {
-            return Err(Error::Nothing { stack: stack.name.clone(), why: counts.why().to_owned() });
+            return Err(Error::Nothing { stack: shot.name.clone(), why: counts.why().to_owned() });
         }
         Ok(())
     }
-}
-
-/// Name of the light of a stack: its own where it names none.
-fn light_of(stack: &Stack) -> &str {
-    stack.light.as_deref().unwrap_or(&stack.name)
 }
 
 /// The picture of a stack, and its path.
