@@ -106,6 +106,7 @@ fn filters_make_a_spectral_table_and_material() {
 #[test]
 fn sets_of_filters_that_are_not_whole_say_so() {
     let folder = filters();
+    photograph(&folder.path().join("flat.tif"), |_| 0.5);
     // A band that one of the lights lacks: the other one stands.
     change(
         folder.path(),
@@ -133,7 +134,7 @@ fn sets_of_filters_that_are_not_whole_say_so() {
         if to.contains("[flat]") {
             let manifest = fs::read_to_string(folder.path().join("x.toml")).expect("a manifest");
             let flat =
-                "[[stack]]\nname = \"flat\"\nshows = \"flat\"\nexposures = [{ photo = \"0_700.tif\", time_s = 1.0 }]\n";
+                "[[stack]]\nname = \"flat\"\nshows = \"flat\"\nexposures = [{ photo = \"flat.tif\", time_s = 1.0 }]\n";
             fs::write(folder.path().join("x.toml"), manifest + flat).expect("written");
         }
         let (code, out, error) = run(folder.path(), &["brdf", "x.toml", "-m", "lambert"]);
