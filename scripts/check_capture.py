@@ -3,7 +3,7 @@
 
     "$(scripts/venv.sh)" scripts/check_capture.py [target/release/photopic]
 
-calibrateCamera and undistortPoints on the left chessboard set, CalibrateDebevec and MergeDebevec on the memorial stack, both of
+calibrateCamera and undistortPoints on the left chessboard set, findChessboardCornersSB on it and on the synthetic boards, CalibrateDebevec and MergeDebevec on the memorial stack, both of
 ../shared/capture beside the checkout. Exit status 1 when a line fails, 2 when the photographs are not there.
 """
 
@@ -70,6 +70,19 @@ def camera(program: str) -> None:
     u = i["fx"] * (x * radial + 2 * d["p1"] * x * y + d["p2"] * (r2 + 2 * x * x)) + i["cx"]
     v = i["fy"] * (y * radial + d["p1"] * (r2 + 2 * y * y) + 2 * d["p2"] * x * y) + i["cy"]
     check("undistortPoints there and back, px", float(np.hypot(u - grid[:, 0, 0], v - grid[:, 0, 1]).max()), 1e-6)
+
+
+def corners(program: str) -> None:
+    """Our corners fit a camera no worse than OpenCV's do."""
+    board = np.zeros((54, 3), np.float32)
+    board[:, :2] = np.mgrid[0:9, 0:6].T.reshape(-1, 2)
+    for files in (sorted((SHARED / "chessboard_left").glob("left*.jpg")), sorted((SHARED / "synthetic_camera").glob("board_*.png"))):
+        pictures = [cv2.imread(str(f), cv2.IMREAD_GRAYSCALE) for f in files]
+        found = [cv2.findChessboardCornersSB(p, (9, 6)) for p in pictures]
+        seen = [c for ok, c in found if ok]
+        rms, *_ = cv2.calibrateCamera([board] * len(seen), seen, pictures[0].shape[::-1], None, None)
+        ours = photopic(program, "calibrate", "--board", "9x6", *files)
+        check(f"rms of our corners in {files[0].name} …, px, for OpenCV's {rms:.4f}", ours["rms_px"], rms)
 
 
 def grid(rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
@@ -143,6 +156,7 @@ def main() -> int:
         print("nothing compared: ../shared/capture is not here")
         return 2
     camera(program)
+    corners(program)
     response(program)
     return 1 if failed else 0
 

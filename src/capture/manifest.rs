@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::setup::{Ball, Camera, Flat, Light, Radiance, Reference, Sphere};
+use super::setup::{Ball, Camera, Cylinder, Flat, Light, Mesh, Plane, Radiance, Reference, Sphere};
 use crate::mistake;
 pub use crate::mistake::Mistake as Error;
 
@@ -28,9 +28,18 @@ pub struct Manifest {
     /// The camera that photographed the stacks, and where it stood.
     #[serde(default)]
     pub camera: Option<Camera>,
-    /// The sphere in front of it.
+    /// The sphere in front of it. This and the next three: one of them is the object.
     #[serde(default)]
     pub sphere: Option<Sphere>,
+    /// A cylinder.
+    #[serde(default)]
+    pub cylinder: Option<Cylinder>,
+    /// A plane.
+    #[serde(default)]
+    pub plane: Option<Plane>,
+    /// A mesh of triangles.
+    #[serde(default)]
+    pub mesh: Option<Mesh>,
     /// Balls that tell the lights.
     #[serde(default)]
     pub ball: Vec<Ball>,
@@ -90,6 +99,10 @@ pub struct Stack {
     /// The ball in it, by name; without it the only `[[ball]]`, else the sphere.
     #[serde(default)]
     pub ball: Option<String>,
+    /// The middle of the narrow band that it shows, nm: of filters before the camera, or of a lamp of one colour. The stacks of a light, one
+    /// per band, are one picture; their photographs are grey.
+    #[serde(default, deserialize_with = "super::setup::maybe_positive")]
+    pub wavelength_nm: Option<f64>,
     /// The photographs.
     pub exposures: Vec<Exposure>,
 }
@@ -98,7 +111,7 @@ impl Stack {
     /// A stack of an object.
     #[must_use]
     pub fn new(name: impl Into<String>, exposures: Vec<Exposure>) -> Self {
-        Self { name: name.into(), shows: Shows::Object, light: None, ball: None, exposures }
+        Self { name: name.into(), shows: Shows::Object, light: None, ball: None, wavelength_nm: None, exposures }
     }
 }
 
@@ -129,6 +142,37 @@ pub struct Exposure {
 }
 
 impl Manifest {
+    /// The narrow bands in which the object was photographed, rising; none where its stacks show grey or colours.
+    #[must_use]
+    pub fn wavelengths_nm(&self) -> Vec<f64> {
+        let of_object = self.stack.iter().filter(|s| s.shows == Shows::Object);
+        let mut out: Vec<f64> = of_object.filter_map(|s| s.wavelength_nm).collect();
+        out.sort_by(f64::total_cmp);
+        out.dedup();
+        out
+    }
+
+    /// How many objects are stated: one is expected.
+    #[must_use]
+    pub fn objects(&self) -> usize {
+        [self.sphere.is_some(), self.cylinder.is_some(), self.plane.is_some(), self.mesh.is_some()]
+            .into_iter()
+            .filter(|stated| *stated)
+            .count()
+    }
+
+    /// The picture that masks the object, where one is stated.
+    #[must_use]
+    pub fn mask(&self) -> Option<&str> {
+        let of = [
+            self.sphere.as_ref().map(|o| &o.mask),
+            self.cylinder.as_ref().map(|o| &o.mask),
+            self.plane.as_ref().map(|o| &o.mask),
+            self.mesh.as_ref().map(|o| &o.mask),
+        ];
+        of.into_iter().flatten().find_map(|mask| mask.as_deref())
+    }
+
     /// Reads a manifest.
     ///
     /// # Errors

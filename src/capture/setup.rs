@@ -9,6 +9,7 @@ use serde::de::{Deserializer, Error as _};
 
 use super::Error;
 use super::camera::{self, Intrinsics};
+use super::merge::State;
 use crate::geometry::lens::Distortion;
 
 /// A camera and where it stood. Without place and directions it stands at the origin of its own frame: x to the right, y downwards, z
@@ -107,6 +108,77 @@ pub struct Sphere {
     pub mask: Option<String>,
 }
 
+/// A cylinder: its curved side.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    /// The middle of its axis, m.
+    pub centre_m: [f64; 3],
+    /// Along its axis.
+    #[serde(deserialize_with = "direction")]
+    pub axis: [f64; 3],
+    /// Its radius, m.
+    #[serde(deserialize_with = "positive")]
+    pub radius_m: f64,
+    /// Its length along the axis, m.
+    #[serde(deserialize_with = "positive")]
+    pub length_m: f64,
+    /// A picture of the size of the photographs, brighter than half where its material is to be measured.
+    #[serde(default)]
+    pub mask: Option<String>,
+}
+
+/// A plane: one side of it.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plane {
+    /// A point of it, m: the middle of the rectangle.
+    pub centre_m: [f64; 3],
+    /// Its normal, towards the side of the camera.
+    #[serde(deserialize_with = "direction")]
+    pub normal: [f64; 3],
+    /// Sides of the rectangle that is measured, across and along `up`, m; without it the plane has no end.
+    #[serde(default, deserialize_with = "maybe_size")]
+    pub size_m: Option<[f64; 2]>,
+    /// What is up on it: tells how the rectangle lies.
+    #[serde(default = "y_axis", deserialize_with = "direction")]
+    pub up: [f64; 3],
+    /// A picture of the size of the photographs, brighter than half where its material is to be measured.
+    #[serde(default)]
+    pub mask: Option<String>,
+}
+
+fn y_axis() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+/// A mesh of triangles in a file, and its pose: a point x of the file is at R · `unit_m` · x + `position_m`.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// An OBJ or PLY file. The side of a face that the camera sees is its outside.
+    pub file: String,
+    /// Length of one unit of the file, m.
+    #[serde(default = "one", deserialize_with = "positive")]
+    pub unit_m: f64,
+    /// Rotation vector of R: its axis times the angle, radians, as `capture calibrate` gives those of its views.
+    #[serde(default)]
+    pub rotation_rad: [f64; 3],
+    /// Where the origin of the file is, m.
+    #[serde(default)]
+    pub position_m: [f64; 3],
+    /// Faces are flat. Without it normals run smoothly from corner to corner: those of the file, or the means of the faces at a corner.
+    #[serde(default)]
+    pub flat: bool,
+    /// A picture of the size of the photographs, brighter than half where its material is to be measured.
+    #[serde(default)]
+    pub mask: Option<String>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
 /// A ball in the pictures that tell the lights: a mirror, or diffuse.
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -160,7 +232,7 @@ struct Stated {
     /// Towards a distant light.
     #[serde(default)]
     direction: Option<[f64; 3]>,
-    /// Radiant intensity of a near light, W/sr, per band or one for all.
+    /// Radiant intensity of a near light, W/sr, per band (rising wavelengths) or one for all.
     #[serde(default)]
     intensity_w_per_sr: Option<PerBand>,
     /// Irradiance of a surface that faces a distant light, W/m², per band or one for all.
@@ -232,6 +304,24 @@ pub struct Radiance {
     /// Samples from this one on are saturated.
     #[serde(deserialize_with = "maybe_positive")]
     pub saturated: Option<f64>,
+}
+
+impl Radiance {
+    /// What a sample is.
+    #[must_use]
+    pub fn state(&self, value: f64) -> State {
+        match value {
+            v if self.saturated.is_some_and(|s| v >= s) => State::Saturated,
+            v if v > self.dark && v.is_finite() => State::Valid,
+            _ => State::Dark,
+        }
+    }
+
+    /// Whether standard errors of samples are stated.
+    #[must_use]
+    pub fn states_errors(&self) -> bool {
+        self.relative_error.is_some() || self.absolute_error.is_some()
+    }
 }
 
 /// The evenly lit field that stacks with shows = "flat" show.
@@ -314,8 +404,16 @@ fn positive<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     checked::<D>(value, value > 0.0 && value.is_finite(), "a number above 0")
 }
 
-fn maybe_positive<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+pub(super) fn maybe_positive<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
     positive(from).map(Some)
+}
+
+fn maybe_size<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {
+    let size = <[f64; 2]>::deserialize(from)?;
+    if !size.iter().all(|s| *s > 0.0 && s.is_finite()) {
+        return Err(D::Error::custom(format!("found {size:?}; expected two numbers above 0")));
+    }
+    Ok(Some(size))
 }
 
 fn direction<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 3], D::Error> {

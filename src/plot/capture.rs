@@ -3,10 +3,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::brdf::Tint;
-use super::{ColourMap, ColourRange, CurvesPanel, DotsPanel, FalseColourPanel, NamedCurve, RasterPanel, Series};
+use super::{ColourMap, ColourRange, CurvesPanel, DotsPanel, FalseColourPanel, Kind, NamedCurve, RasterPanel, Series};
 use crate::brdf::Brdf;
 use crate::brdf::coordinates::HalfDiff;
-use crate::capture::brdf::{Binned, Maps};
+use crate::brdf::table::Known;
+use crate::capture::brdf::{Binned, Filled, Maps};
 use crate::capture::response::Curve;
 
 /// Rows of θ_d whose lobes are drawn at most.
@@ -40,9 +41,13 @@ pub fn response_panel(curves: &[Curve], names: &[String]) -> CurvesPanel {
     }
 }
 
-/// Part of the bins in φ_d that is measured, over θ_h (to the right, as its root, 0° to 90°) and θ_d (upwards, 0° to 90°).
+/// Colour of bins that were filled: in no map.
+const INFERRED: [u8; 3] = [235, 120, 60];
+
+/// Part of the bins in φ_d that is measured, over θ_h (to the right, as its root, 0° to 90°) and θ_d (upwards, 0° to 90°); of a colour of its own
+/// where nothing was measured and bins were filled.
 #[must_use]
-pub fn coverage_panel(binned: &Binned) -> FalseColourPanel {
+pub fn coverage_panel(binned: &Binned, filled: Option<&Filled>) -> FalseColourPanel {
     let r = binned.resolution;
     let place = |bin: usize| (r.theta_d - 1 - bin / r.phi_d % r.theta_d) * r.theta_h + bin / (r.theta_d * r.phi_d);
     let (mut measured, mut possible) = (vec![0.0_f32; r.theta_h * r.theta_d], vec![0.0_f32; r.theta_h * r.theta_d]);
@@ -52,16 +57,24 @@ pub fn coverage_panel(binned: &Binned) -> FalseColourPanel {
     }
     binned.bins.iter().for_each(|b| measured[place(b.bin)] += 1.0);
     let share = |(m, p): (&f32, &f32)| if *p > 0.0 { (m / p).min(1.0) } else { f32::NAN };
+    let mut values: Vec<f32> = measured.iter().zip(&possible).map(share).collect();
+    let known = filled.map_or(&[][..], |f| &f.known);
+    for (bin, _) in known.iter().enumerate().filter(|(_, k)| **k == Known::Inferred) {
+        if measured[place(bin)] == 0.0 {
+            values[place(bin)] = -1.0;
+        }
+    }
     FalseColourPanel {
         title: "coverage".to_owned(),
         figures: "θh to the right, as √θh, θd upwards, both 0° to 90°".to_owned(),
         columns: r.theta_h,
         rows: r.theta_d,
-        values: measured.iter().zip(&possible).map(share).collect(),
+        values,
         unit: "of φd".to_owned(),
         range: ColourRange { low: 0.0, high: 1.0, logarithmic: false },
         map: ColourMap::Viridis,
         levels: Vec::new(),
+        below: filled.map(|_| Kind { name: "inferred".to_owned(), colour: INFERRED }),
     }
 }
 
@@ -139,6 +152,7 @@ pub fn maps_panels(maps: &Maps, tint: &Tint, bands: usize) -> (RasterPanel, Rast
         range: ColourRange { low: -reach, high: reach, logarithmic: false },
         map: ColourMap::Viridis,
         levels: Vec::new(),
+        below: None,
     };
     (raster("photograph", &maps.measured), raster("model", &maps.modelled), difference)
 }

@@ -102,6 +102,17 @@ pub struct FalseColourPanel {
     pub map: ColourMap,
     /// Contour lines.
     pub levels: Vec<Level>,
+    /// What values below the range stand for, where that is more than that they are low.
+    pub below: Option<Kind>,
+}
+
+/// A kind of place with a colour of its own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Kind {
+    /// In the legend.
+    pub name: String,
+    /// Its colour, which no map has.
+    pub colour: [u8; 3],
 }
 
 /// Pictures are enlarged to at least this side, each pixel by a whole number.
@@ -148,12 +159,19 @@ impl FalseColourPanel {
             area: picture,
             columns: self.columns as u32,
             rows: self.rows as u32,
-            pixels: self.values.iter().flat_map(|v| self.range.colour(self.map, f64::from(*v))).collect(),
+            pixels: self.values.iter().flat_map(|v| self.colour(f64::from(*v))).collect(),
         });
         self.contours(sheet, picture, zoom);
         // The frame stands outside, so that no pixel of the picture is touched.
         sheet.frame(picture.grown(0.5), 1.0, FRAME);
         self.legend(sheet, Rect::new(picture.x1 + 16.0, y, picture.x1 + 34.0, y + room.1));
+    }
+
+    fn colour(&self, value: f64) -> [u8; 3] {
+        match &self.below {
+            Some(kind) if value < self.range.low => kind.colour,
+            _ => self.range.colour(self.map, value),
+        }
     }
 
     fn contours(&self, sheet: &mut Sheet, picture: Rect, zoom: f64) {
@@ -203,7 +221,9 @@ impl FalseColourPanel {
         }
         if under {
             bar.y1 -= BOX + 1.0;
-            boxed(sheet, bar.y1, UNDER, &format!("< {}", text(self.range.low)));
+            let low = || (UNDER, format!("< {}", text(self.range.low)));
+            let (colour, words) = self.below.as_ref().map_or_else(low, |k| (k.colour, k.name.clone()));
+            boxed(sheet, bar.y1, colour, &words);
             bar.y1 -= 10.0;
         }
         let rows = bar.height().floor().max(1.0);

@@ -125,6 +125,7 @@ impl FalseColour {
             range,
             map: self.map,
             levels: lines(picture, &levels),
+            below: None,
         })
     }
 }

@@ -80,7 +80,7 @@ pub use colour_vector::ColourVectorPanel;
 pub use cone::{ConePanel, ConeStep};
 pub use curves::{CurvesPanel, NamedCurve};
 pub use dots::{DotsPanel, Series};
-pub use falsecolour::{ColourRange, FalseColourPanel, Level};
+pub use falsecolour::{ColourRange, FalseColourPanel, Kind, Level};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
 pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::brdf_fit;
-use crate::brdf::table::Channel;
-use crate::capture::brdf::{Binned, Counts, Observations};
+use crate::brdf::table::{Channel, Known};
+use crate::capture::brdf::{Bin, Binned, Counts, Filled, Observations};
 use crate::capture::setup::Place;
 use crate::geometry::direction;
 use crate::units::significant;
@@ -28,12 +28,14 @@ pub struct StackSeen {
     pub counts: Counts,
     /// Strength of the light per band, over the radiance of a sample of 1 at 1 s.
     pub strength: Vec<f64>,
+    /// Median of |measured/modelled − 1| of the best fit, where there is one.
+    pub deviation: Option<f64>,
 }
 
 /// What the absolute values rest on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Scale {
-    /// A diffuse sphere of known reflectance.
+    /// A diffuse object of known reflectance in the place of the other.
     Reference {
         /// Its reflectance.
         reflectance: Vec<f64>,
@@ -56,9 +58,58 @@ pub enum Scale {
     },
 }
 
+/// Bins that were filled on request, and by what.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filling {
+    /// By what.
+    pub by: FilledBy,
+    /// The table.
+    pub filled: Filled,
+}
+
+/// What bins were filled by.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FilledBy {
+    /// A fitted model, by its name.
+    Model(String),
+    /// Principal components, by the checksum of their basis.
+    Basis(String),
+}
+
+impl std::fmt::Display for FilledBy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Model(name) => write!(f, "the model {name}"),
+            Self::Basis(checksum) => write!(f, "the principal components of basis {checksum}"),
+        }
+    }
+}
+
+impl Filling {
+    /// Bins measured, inferred and missing.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 3] {
+        [Known::Measured, Known::Inferred, Known::Missing].map(|k| self.filled.count(k))
+    }
+
+    fn object(&self) -> Value {
+        let [measured, inferred, missing] = self.counts();
+        let (kind, key, name) = match &self.by {
+            FilledBy::Model(name) => ("model", "model", name),
+            FilledBy::Basis(checksum) => ("pca", "basis", checksum),
+        };
+        json!({
+            "kind": kind, key: name, "measured_bins": measured, "inferred_bins": inferred, "missing_bins": missing,
+            "inferred_fraction": inferred as f64 / (measured + inferred) as f64,
+        })
+    }
+}
+
 /// Everything there is to tell.
 #[derive(Debug, Clone, Copy)]
 pub struct Answer<'a> {
+    /// What the object is: `sphere`.
+    pub object: &'a str,
     /// The pictures.
     pub seen: &'a [StackSeen],
     /// What absolute values rest on.
@@ -67,6 +118,8 @@ pub struct Answer<'a> {
     pub all: &'a Observations,
     /// The same in bins.
     pub binned: &'a Binned,
+    /// The bins that were filled, where that was asked for.
+    pub filling: Option<&'a Filling>,
     /// Fits, where one succeeded.
     pub fits: Option<&'a brdf_fit::Answer<'a>>,
 }
@@ -86,7 +139,13 @@ pub(super) fn total(seen: &[StackSeen]) -> Vec<(&'static str, usize)> {
 /// The result as JSON.
 #[must_use]
 pub fn object(a: &Answer<'_>) -> Value {
-    let stack = |s: &StackSeen| json!({"stack": s.name, "pixels": counts(&s.counts)});
+    let stack = |s: &StackSeen| {
+        let mut out = json!({"stack": s.name, "pixels": counts(&s.counts)});
+        if let Some(deviation) = s.deviation {
+            out["deviation_median_relative"] = deviation.into();
+        }
+        out
+    };
     let light = |s: &StackSeen| {
         let mut out = json!({"name": s.light, "strength": s.strength});
         match s.place {
@@ -108,6 +167,7 @@ pub fn object(a: &Answer<'_>) -> Value {
     let sum: Map<String, Value> = total(a.seen).into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect();
     let channels: Vec<String> = a.all.channels.iter().map(Channel::to_string).collect();
     let mut out = json!({
+        "object": a.object,
         "bands": channels,
         "scale": scale,
         "lights": a.seen.iter().map(light).collect::<Vec<_>>(),
@@ -122,6 +182,9 @@ pub fn object(a: &Answer<'_>) -> Value {
         "coverage_fraction": a.binned.coverage_fraction(),
         "fits": [],
     });
+    if let Some(filling) = a.filling {
+        out["filled"] = filling.object();
+    }
     if let (Some(fits), Value::Object(out)) = (a.fits, &mut out) {
         let mut of = brdf_fit::object(fits);
         for key in ["fits", "best", "comparison"] {
@@ -156,24 +219,47 @@ pub fn measurements(seen: &[StackSeen], places: &[(usize, (usize, usize))], all:
     out
 }
 
-/// The bins with measurements, a row each.
+/// The bins with values, a row each; where bins were filled, a column tells how each is known.
 #[must_use]
 pub fn csv(a: &Answer<'_>) -> String {
     let mut out = String::from("theta_h_deg,theta_d_deg,phi_d_deg,measurements,rejected");
+    if a.filling.is_some() {
+        out.push_str(",known");
+    }
     // Writing to a string cannot fail.
     for channel in &a.all.channels {
         let _ = write!(out, ",f_{channel}_per_sr,standard_error_{channel}_per_sr");
     }
     out.push('\n');
-    for bin in &a.binned.bins {
-        let at = a.binned.resolution.centre(bin.bin);
+    let mut row = |number: usize, bin: Option<&Bin>, known: Option<Known>| {
+        let at = a.binned.resolution.centre(number);
         let [h, d, p] = [at.theta_h, at.theta_d, at.phi_d].map(f64::to_degrees);
-        let _ = write!(out, "{h},{d},{p},{},{}", bin.count, bin.rejected);
-        for (value, error) in bin.values.iter().zip(&bin.errors) {
-            let error = if error.is_nan() { String::new() } else { error.to_string() };
-            let _ = write!(out, ",{value},{error}");
+        let _ = write!(out, "{h},{d},{p},{},{}", bin.map_or(0, |b| b.count), bin.map_or(0, |b| b.rejected));
+        if let Some(known) = known {
+            let _ = write!(out, ",{known}");
+        }
+        match (bin, a.filling) {
+            (Some(bin), _) => {
+                for (value, error) in bin.values.iter().zip(&bin.errors) {
+                    let error = if error.is_nan() { String::new() } else { error.to_string() };
+                    let _ = write!(out, ",{value},{error}");
+                }
+            }
+            (None, Some(f)) => f.filled.table.bin(number).iter().for_each(|value| {
+                let _ = write!(out, ",{value},");
+            }),
+            (None, None) => {}
         }
         out.push('\n');
+    };
+    match a.filling {
+        None => a.binned.bins.iter().for_each(|b| row(b.bin, Some(b), None)),
+        Some(f) => {
+            let mut measured = a.binned.bins.iter().peekable();
+            for (number, known) in f.filled.known.iter().enumerate().filter(|(_, k)| **k != Known::Missing) {
+                row(number, measured.next_if(|b| b.bin == number), Some(*known));
+            }
+        }
     }
     out
 }
@@ -184,14 +270,16 @@ pub fn text(a: &Answer<'_>) -> String {
     let mut out = String::new();
     let width = a.seen.iter().map(|s| s.name.chars().count()).max().unwrap_or(0).max(5);
     let _ = write!(out, "{:width$}", "stack");
-    for (name, _) in total(&[]) {
-        let _ = write!(out, "{:>16}", name.replace('_', " "));
+    // What no pixel is masked for is left out.
+    let shown: Vec<bool> = total(a.seen).iter().map(|(name, n)| *n > 0 || *name == "valid").collect();
+    for ((name, _), _) in total(&[]).iter().zip(&shown).filter(|(_, s)| **s) {
+        let _ = write!(out, "{:>17}", name.replace('_', " "));
     }
     out.push('\n');
     let row = |out: &mut String, name: &str, counts: &[(&str, usize)]| {
         let _ = write!(out, "{name:width$}");
-        for (_, n) in counts {
-            let _ = write!(out, "{n:>16}");
+        for ((_, n), _) in counts.iter().zip(&shown).filter(|(_, s)| **s) {
+            let _ = write!(out, "{n:>17}");
         }
         out.push('\n');
     };
@@ -222,6 +310,14 @@ pub fn text(a: &Answer<'_>) -> String {
         r.theta_d,
         r.phi_d
     );
+    if let Some(filling) = a.filling {
+        let [measured, inferred, _] = filling.counts();
+        let _ = writeln!(
+            out,
+            "filled    {inferred} bins are inferred by {}, beside {measured} measured ones\n",
+            filling.by
+        );
+    }
     if let Some(fits) = a.fits {
         out.push_str(&brdf_fit::text(fits));
     }

@@ -1,4 +1,4 @@
-//! The report on a photographed sphere: what it rests on, how well a model fits, what is missing.
+//! The report on a photographed object: what it rests on, how well a model fits, what is missing.
 
 use serde_json::{Map, Value, json};
 
@@ -119,8 +119,11 @@ pub fn page(p: &Parts<'_>) -> Page {
     let best = a.fits.map(|f| &f.fits[brdf_fit::best(f)]);
     let model =
         best.map_or_else(String::new, |f| format!(" Of the models fitted, {} describes them best.", f.template));
-    let lead =
-        format!("{} measurements of the BRDF of a sphere from {lights} photograph(s). {scale}{model}", a.all.len());
+    let lead = format!(
+        "{} measurements of the BRDF of a {} from {lights} photograph(s). {scale}{model}",
+        a.all.len(),
+        a.object
+    );
     let mut sections = vec![summary(p)];
     sections.extend([coverage(p), fits(p), maps(p), physics(p), next(p), set_up(p), inputs(p)].into_iter().flatten());
     Page { title: p.title.to_owned(), lead, sections }
@@ -140,11 +143,22 @@ fn coverage(p: &Parts<'_>) -> Option<Section> {
     let (a, r) = (p.answer, p.answer.binned.resolution);
     let rows = a.seen.iter().map(|s| (s.name.clone(), s.counts.named().map(|(_, n)| n)));
     let all = ("all".to_owned(), std::array::from_fn(|i| total(a.seen)[i].1));
-    let row = |(name, n): (String, [usize; 7])| {
+    let row = |(name, n): (String, [usize; 9])| {
         [vec![name], n.map(|n| n.to_string()).to_vec()].concat().try_into().unwrap_or_default()
     };
-    let rows: Vec<[String; 8]> = rows.chain([all]).map(row).collect();
-    let head = ["stack", "valid", "outside", "masked", "silhouette", "attached shadow", "saturated", "dark"];
+    let rows: Vec<[String; 10]> = rows.chain([all]).map(row).collect();
+    let head = [
+        "stack",
+        "valid",
+        "outside",
+        "masked",
+        "silhouette",
+        "attached shadow",
+        "cast shadow",
+        "inter-reflection",
+        "saturated",
+        "dark",
+    ];
     let words = format!(
         "{} of {} bins above the horizon are measured ({}), of {} × {} × {} in θh, θd, φd. Of the 3° bins that this camera can \
          see under any light, {} are covered. Where the map is dark or empty, nothing is known but what a model supposes.",
@@ -156,7 +170,16 @@ fn coverage(p: &Parts<'_>) -> Option<Section> {
         r.phi_d,
         percent(p.more.reachable)
     );
-    let section = Section::new("Coverage").text(words).figures(p.pictures.coverage.clone());
+    let mut section = Section::new("Coverage").text(words);
+    if let Some(filling) = a.filling {
+        let [measured, inferred, _] = filling.counts();
+        section = section.text(format!(
+            "On request {inferred} bins were filled by {}, beside {measured} measured ones. They are marked as inferred wherever they \
+             are written; nobody measured them, and they have no standard error.",
+            filling.by
+        ));
+    }
+    let section = section.figures(p.pictures.coverage.clone());
     Some(section.table("What became of the pixels", head, rows))
 }
 
@@ -204,9 +227,12 @@ fn maps(p: &Parts<'_>) -> Option<Section> {
         return None;
     }
     let row = |(stack, median, rms): &(String, f64, f64)| [stack.clone(), percent(*median), percent(*rms)];
-    let words = "Each photograph beside the same sphere rendered from the best model under the same light, and their difference where \
-                 it was measured. A difference that follows the highlight is the model's; one that runs across the sphere is the light's \
-                 place or strength; a rim is the sphere's place or size.";
+    let object = p.answer.object;
+    let words = format!(
+        "Each photograph beside the same {object} rendered from the best model under the same light, and their difference where it was \
+         measured. A difference that follows the highlight is the model's; one that runs across the {object} is the light's place or \
+         strength; a rim is the {object}'s place or size."
+    );
     Some(
         Section::new("Photograph and model")
             .text(words)
@@ -265,11 +291,17 @@ fn next(p: &Parts<'_>) -> Option<Section> {
             percent(n.covered_fraction),
         ]
     };
-    let words = "These lights cover most of what is missing, each after the ones above it. What counts is the angle between light and camera as \
-                 seen from the sphere (twice θd); on which side of the camera the light stands makes no difference to an isotropic material.";
+    let mut words = "These lights cover most of what is missing, each after the ones above it. ".to_owned();
+    words.push_str(match p.answer.object {
+        "sphere" => {
+            "What counts is the angle between light and camera as seen from the sphere (twice θd); on which side of the camera the \
+             light stands makes no difference to an isotropic material."
+        }
+        _ => "Eight sides of the camera were tried at every angle to it; cast shadows are taken into account.",
+    });
     Some(section.text(words).table(
         "Lights to add",
-        ["angle to the camera", "such a direction, from the sphere", "new bins of 3°", "covered then"],
+        ["angle to the camera", "direction, from the object", "new bins of 3°", "covered then"],
         p.more.next.iter().map(row).collect(),
     ))
 }

@@ -62,3 +62,25 @@ fn own_corners_fit_no_worse_than_opencvs() {
     let found = calibrate(&views).expect("a camera");
     assert!(found.rms_px <= OPENCV_RMS_PX, "{}", found.rms_px);
 }
+
+/// Rms, pixels, of `calibrateCamera` from the corners of `findChessboardCornersSB` in the twelve synthetic boards (OpenCV 5.0.0, without flags).
+const OPENCV_SB_RMS_PX: f64 = 0.07919;
+/// The focal length of the camera that they were computed with: that of `scene.json`'s field of view.
+const FOCAL_PX: f64 = 1712.936;
+
+#[test]
+fn own_corners_of_synthetic_boards_fit_no_worse_than_opencvs_and_tell_the_camera() {
+    let Some(folder) = shared("capture/synthetic_camera") else { return };
+    let view = |n: usize| {
+        let name = format!("board_{n:02}.png");
+        let photo = Photo::decode(&fs::read(folder.join(&name)).expect("a photograph")).expect("a PNG");
+        find_corners(&name, &photo, [9, 6], 1.0).expect("the whole board")
+    };
+    let views: Vec<View> = (0..12).map(view).collect();
+    let found = calibrate(&views).expect("a camera");
+    assert!(found.rms_px <= OPENCV_SB_RMS_PX, "{}", found.rms_px);
+    let intrinsics = found.camera.intrinsics;
+    for (value, sigma) in [(intrinsics.fx, found.standard_errors[0]), (intrinsics.fy, found.standard_errors[1])] {
+        assert!((value - FOCAL_PX).abs() < 3.0 * sigma, "{value} ± {sigma}");
+    }
+}

@@ -7,27 +7,25 @@ use std::path::Path;
 use assert_cmd::Command;
 use exif::experimental::Writer;
 use exif::{Field, In, Rational, Tag, Value as Exif};
-use glam::DVec3;
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat};
 use serde_json::Value;
 use tempfile::TempDir;
-use tiff::encoder::{TiffEncoder, colortype};
 
 use crate::common::shared;
 
 /// Runs a verb in a folder; exit code, standard output and standard error.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let mut command = Command::cargo_bin("photopic").expect("the program");
     let output = command.current_dir(folder).arg("capture").args(arguments).output().expect("it runs");
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
     (output.status.code().expect("an exit code"), text(output.stdout), text(output.stderr))
 }
 
-fn json(text: &str) -> Value {
+pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("one JSON document")
 }
 
-fn has_finding(document: &Value, code: &str) -> bool {
+pub(crate) fn has_finding(document: &Value, code: &str) -> bool {
     document["findings"].as_array().expect("findings").iter().any(|f| f["code"] == code)
 }
 
@@ -195,117 +193,4 @@ fn boards_calibrate_and_what_shows_none_is_left_out() {
     let sigma = document["results"][0]["standard_errors"]["intrinsics"]["fx"].as_f64().expect("its error");
     // OpenCV's of all 25 views; that its own error is no larger is seen to by the views being among them.
     assert!((fx - 518.621).abs() < 4.0 * sigma, "{fx} ± {sigma}");
-}
-
-/// A white diffuse sphere of reflectance 0.5 under one distant light, as a linear TIFF of 16 bits: radiance 1 is full.
-fn sphere(path: &Path, light: DVec3) {
-    let (centre, side, focal) = (DVec3::new(0.0, 0.0, 10.0), 64_u32, 300.0);
-    let pixel = |i: u32| {
-        let at = |n: u32| (f64::from(n) - 31.5) / focal;
-        let ray = DVec3::new(at(i % side), at(i / side), 1.0).normalize();
-        let (b, c) = (ray.dot(centre), centre.length_squared() - 1.0);
-        let root = b * b - c;
-        let normal = ray * (b - root.max(0.0).sqrt()) - centre;
-        let radiance =
-            if root > 0.0 { 0.5 / std::f64::consts::PI * 3.0 * normal.dot(light.normalize()).max(0.0) } else { 0.0 };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65535")]
-        let sample = (65535.0 * radiance).round() as u16;
-        sample
-    };
-    let samples: Vec<u16> = (0..side * side).map(pixel).collect();
-    let mut file = fs::File::create(path).expect("a file");
-    let mut encoder = TiffEncoder::new(&mut file).expect("a TIFF");
-    encoder.write_image::<colortype::Gray16>(side, side, &samples).expect("written");
-}
-
-const SPHERE: &str = "title = \"a <white> ball\"
-[camera]
-fx = 300.0
-fy = 300.0
-cx = 31.5
-cy = 31.5
-places_per_side = 1
-[sphere]
-centre_m = [0.0, 0.0, 10.0]
-radius_m = 1.0
-[radiance]
-unit_w_per_m2_sr = 1.0
-absolute_error = 5e-6
-";
-
-/// A folder with a manifest of the sphere under lights from these directions, each with its photograph.
-fn spheres(lights: &[[f64; 3]]) -> TempDir {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut manifest = SPHERE.to_owned();
-    for (n, direction) in lights.iter().enumerate() {
-        sphere(&folder.path().join(format!("{n}.tif")), DVec3::from_array(*direction));
-        manifest.push_str(&format!(
-            "[[light]]\nname = \"{n}\"\ndirection = {direction:?}\nirradiance_w_per_m2 = 3.0\n\
-             [[stack]]\nname = \"{n}\"\nexposures = [{{ photo = \"{n}.tif\" }}]\n"
-        ));
-    }
-    fs::write(folder.path().join("capture.toml"), manifest).expect("a manifest");
-    folder
-}
-
-const LIGHTS: [[f64; 3]; 3] = [[0.3, 0.2, -1.0], [1.0, 0.0, -0.5], [-0.5, -0.8, -0.4]];
-
-#[test]
-fn a_sphere_gives_its_brdf_and_a_report() {
-    let folder = spheres(&LIGHTS);
-    let arguments =
-        ["brdf", "capture.toml", "-m", "lambert", "--resolution", "30x30x36", "--report", "ball.html", "--json"];
-    let (code, out, error) = run(folder.path(), &arguments);
-    assert_eq!(code, 0, "{error}");
-    let result = &json(&out)["results"][0];
-    // Rounding to 1/65535 where cosθ_i is a sixth: 1/(2 · 0.08 · 65535) of the value at most.
-    let found = result["fits"][0]["parameters"][0]["value"].as_f64().expect("a reflectance");
-    assert!((found - 0.5).abs() < 0.5 * 1e-4, "{found}");
-    assert!(result["audit"]["albedo_max"].as_f64().is_some_and(|a| (a - 0.5).abs() < 1e-4), "{result}");
-    assert!(result["reciprocity"]["median_relative"].as_f64().is_some_and(|r| r < 1e-3), "{}", result["reciprocity"]);
-    assert_eq!(result["residuals"].as_array().map(Vec::len), Some(3));
-    // No light stands near the middle of what these three leave: the first one named is apart from all of them.
-    let to_camera = |l: [f64; 3]| DVec3::from_array(l).normalize().dot(DVec3::NEG_Z).acos().to_degrees();
-    let next = result["next_lights"][0]["to_camera_deg"].as_f64().expect("a light");
-    assert!(LIGHTS.iter().all(|l| (to_camera(*l) - next).abs() > 5.0), "{next}");
-    let shares: Vec<f64> = result["next_lights"]
-        .as_array()
-        .expect("lights")
-        .iter()
-        .filter_map(|n| n["reachable_coverage_fraction"].as_f64())
-        .collect();
-    assert!(shares.is_sorted() && shares[0] > result["reachable_coverage_fraction"].as_f64().expect("a share"));
-    let page = fs::read_to_string(folder.path().join("ball.html")).expect("a report");
-    assert!(page.contains("<title>a &lt;white&gt; ball</title>") && page.contains("What to photograph next"));
-    for file in json(&out)["inputs"].as_array().expect("inputs") {
-        assert!(page.contains(file["sha256"].as_str().expect("a checksum")), "{file}");
-    }
-    // Self-contained: nothing is fetched, and no script is needed.
-    assert!(!page.contains("src=\"http") && !page.contains("href=\"http") && !page.contains("<script"));
-    assert!(page.matches("<img src=\"data:image/").count() >= 12);
-}
-
-#[test]
-fn spheres_that_tell_little_or_nothing_say_so() {
-    let folder = spheres(&LIGHTS[..1]);
-    let fit = ["brdf", "capture.toml", "-m", "lambert", "--resolution", "30x30x36"];
-    let (code, _, error) = run(folder.path(), &fit);
-    assert!(code == 0 && error.contains("K010"), "{error}");
-    image::GrayImage::new(7, 7).save(folder.path().join("mask.png")).expect("written");
-    let (code, out, error) = run(folder.path(), &[&fit[..], &["--mask", "mask.png"]].concat());
-    assert!(code == 2 && out.is_empty() && error.contains("found a mask of another size than 64 × 64"), "{error}");
-    // One of three lights behind the sphere: the others stand.
-    let folder = spheres(&[LIGHTS[0], LIGHTS[1], [0.0, 0.0, 1.0]]);
-    let (code, out, error) = run(folder.path(), &[&fit[..], &["--json"]].concat());
-    let document = json(&out);
-    assert!(code == 2 && has_finding(&document, "K001") && error.contains("below the horizon"), "{error}");
-    assert!(document["results"][0]["measurements"].as_u64().is_some_and(|n| n > 1000), "{document}");
-    // Alone it is an error, as is a stack of codes.
-    let folder = spheres(&[[0.0, 0.0, 1.0]]);
-    let (code, out, error) = run(folder.path(), &fit);
-    assert!(code == 2 && out.is_empty() && error.contains("below the horizon"), "{error}");
-    let manifest = fs::read_to_string(folder.path().join("capture.toml")).expect("a manifest");
-    fs::write(folder.path().join("capture.toml"), manifest.replace("0.tif", "missing.tif")).expect("written");
-    let (code, _, error) = run(folder.path(), &fit);
-    assert!(code == 2 && error.contains("missing.tif: cannot be read"), "{error}");
 }

@@ -9,3 +9,6 @@ mod cli;
 mod lights;
 mod photographs;
 mod response;
+mod shapes;
+mod spectral;
+mod spheres;

@@ -63,7 +63,7 @@ fn truth(folder: &Path, scene: &Value) -> Vec<HashMap<(usize, usize), [f64; 3]>>
         "[camera]\nfx = {FOCAL_PX}\nfy = {FOCAL_PX}\ncx = {MIDDLE_PX}\ncy = {MIDDLE_PX}\nposition_m = [0, 0, 8]\nforward = [0, 0, -1]\nup = [0, 1, 0]\n\
          [sphere]\ncentre_m = [0, 0, 0]\nradius_m = 1\n[radiance]\nunit_w_per_m2_sr = 1\n"
     );
-    let limits = Limits { max_theta_i_deg: 85.0, max_theta_o_deg: 85.0, every: 1 };
+    let limits = Limits { max_theta_i_deg: 85.0, max_theta_o_deg: 85.0, every: 1, ..Limits::default() };
     let measured = Scene::new(&Manifest::parse(&text).expect("a manifest"), limits).expect("a scene");
     let intensity = numbers(&scene["light"]["intensity_W_per_sr_rgb"]);
     let one = |(k, position): (usize, &Value)| {

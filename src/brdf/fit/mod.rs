@@ -15,7 +15,8 @@
 //! robust            (JᵀWJ)⁻¹ Jᵀ(w² r²)J (JᵀWJ)⁻¹ · N/(N − k)    independent, of any variance (White 1980, HC1)
 //! ```
 //!
-//! N is the number of values (places times bands), k that of the variables. Neither knows that a model may be wrong: where it misses the
+//! An error that all values have in common ([`Samples::with_common`]), d in r with one standard uncertainty, moves the parameters by
+//! m = (JᵀWJ)⁻¹ JᵀW d and adds m mᵀ to both. N is the number of values (places times bands), k that of the variables. Neither knows that a model may be wrong: where it misses the
 //! table by more than the noise, residuals of neighbours are alike, and both are too small. Derivatives by the parameters are carried
 //! over from those by the coordinates of the fit to first order. A parameter at a bound has no standard error, nor have those that the data
 //! cannot tell apart (JᵀWJ scaled to a unit diagonal with a condition beyond 1e10).

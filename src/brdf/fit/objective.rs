@@ -35,7 +35,17 @@ struct Moved {
     by: Vec<f64>,
 }
 
-/// The sums of one band: Σ r², Jᵀr and the upper triangle of JᵀJ over the columns; the meat Σ w² r² JᵀJ where it is asked for.
+/// What is summed over the places.
+pub(super) struct Sums {
+    /// Σ w r², Jᵀwr and JᵀWJ.
+    pub(super) at: Linearised,
+    /// Σ w² r² JᵀJ.
+    pub(super) meat: DMatrix<f64>,
+    /// Jᵀwd, d what the common error of the samples changes r by.
+    pub(super) common: DVector<f64>,
+}
+
+/// The sums of one band: Σ r², Jᵀr and the upper triangle of JᵀJ over the columns; the meat Σ w² r² JᵀJ and Jᵀwd where they are asked for.
 struct Layout {
     columns: usize,
     meat: bool,
@@ -47,7 +57,7 @@ impl Layout {
     }
 
     fn length(&self) -> usize {
-        1 + self.columns + self.triangle() * if self.meat { 2 } else { 1 }
+        1 + self.columns + self.triangle() + if self.meat { self.triangle() + self.columns } else { 0 }
     }
 }
 
@@ -75,7 +85,7 @@ impl Objective<'_> {
     }
 
     /// Normal equations by forward differences.
-    fn forward(&self, x: &[f64]) -> Option<(Linearised, DMatrix<f64>)> {
+    fn forward(&self, x: &[f64]) -> Option<Sums> {
         let base = self.model(x)?;
         let columns = self.coordinates.columns.len();
         let moved: Vec<Moved> = (0..columns).map(|c| self.moved(x, c, FORWARD)).collect::<Option<_>>()?;
@@ -86,8 +96,8 @@ impl Objective<'_> {
         self.sums(&models, &pairs, &steps, false)
     }
 
-    /// Normal equations by central differences where both sides are within the ranges, and Σ w² r² JᵀJ.
-    pub(super) fn central(&self, x: &[f64]) -> Option<(Linearised, DMatrix<f64>)> {
+    /// Normal equations by central differences where both sides are within the ranges, and the other sums.
+    pub(super) fn central(&self, x: &[f64]) -> Option<Sums> {
         let base = self.model(x)?;
         let columns = self.coordinates.columns.len();
         let (mut moved, mut pairs, mut steps) = (Vec::new(), Vec::new(), Vec::new());
@@ -111,13 +121,7 @@ impl Objective<'_> {
     }
 
     /// Normal equations from models at differences `pairs` (column by column) and their inverse steps per band.
-    fn sums(
-        &self,
-        models: &[&dyn Brdf],
-        pairs: &[(usize, usize)],
-        steps: &[Vec<f64>],
-        meat: bool,
-    ) -> Option<(Linearised, DMatrix<f64>)> {
+    fn sums(&self, models: &[&dyn Brdf], pairs: &[(usize, usize)], steps: &[Vec<f64>], meat: bool) -> Option<Sums> {
         let layout = Layout { columns: pairs.len(), meat };
         let (bands, length) = (self.coordinates.bands, layout.length());
         let piece = |first: usize| {
@@ -137,6 +141,11 @@ impl Objective<'_> {
                         *row = slope * (values[a * bands + band] - values[b * bands + band]) * step[band];
                     }
                     add(out, &row, weight, r, meat);
+                    if let Some(off) = self.samples.common.get(i * bands + band).filter(|_| meat) {
+                        let change = self.residual.at(self.samples.cosines[i], y + off, f).0 - r;
+                        let sums = &mut out[length - layout.columns..];
+                        sums.iter_mut().zip(&row).for_each(|(s, row)| *s += weight * row * change);
+                    }
                 }
             }
             out
@@ -151,9 +160,9 @@ impl Objective<'_> {
     }
 
     /// The sums of the bands put where their variables are.
-    fn assemble(&self, total: &[f64], layout: &Layout) -> (Linearised, DMatrix<f64>) {
+    fn assemble(&self, total: &[f64], layout: &Layout) -> Sums {
         let n = self.coordinates.count;
-        let (mut cost, mut gradient) = (0.0, DVector::zeros(n));
+        let (mut cost, mut gradient, mut common) = (0.0, DVector::zeros(n), DVector::zeros(n));
         let (mut normal, mut meat) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
         for (band, sums) in total.chunks_exact(layout.length()).enumerate() {
             cost += sums[0];
@@ -161,6 +170,9 @@ impl Objective<'_> {
             for c in 0..layout.columns {
                 let v = self.coordinates.variable(c, band);
                 gradient[v] += sums[1 + c];
+                if layout.meat {
+                    common[v] += sums[layout.length() - layout.columns + c];
+                }
                 for d in c..layout.columns {
                     let w = self.coordinates.variable(d, band);
                     let put = |matrix: &mut DMatrix<f64>, value: f64| {
@@ -177,7 +189,7 @@ impl Objective<'_> {
                 }
             }
         }
-        (Linearised { cost, normal, gradient }, meat)
+        Sums { at: Linearised { cost, normal, gradient }, meat, common }
     }
 }
 
@@ -188,7 +200,7 @@ fn add(out: &mut [f64], row: &[f64], weight: f64, r: f64, meat: bool) {
     out[0] += weight * r * r;
     let (gradient, triangle) = out[1..].split_at_mut(columns);
     let mut at = 0;
-    let half = triangle.len() / 2;
+    let half = columns * (columns + 1) / 2;
     for c in 0..columns {
         let left = weight * row[c];
         gradient[c] += left * r;
@@ -224,6 +236,6 @@ impl Problem for Objective<'_> {
     }
 
     fn linearise(&self, x: &[f64]) -> Option<Linearised> {
-        self.forward(x).map(|(at, _)| at)
+        self.forward(x).map(|sums| sums.at)
     }
 }

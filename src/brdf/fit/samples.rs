@@ -44,6 +44,8 @@ pub struct Samples {
     pub(super) weights: Vec<f64>,
     /// In 1/sr, the bands of a place side by side.
     pub(super) values: Vec<f64>,
+    /// By how much each value would be off if what all of them rest on were off by one standard uncertainty; none where that is not stated.
+    pub(super) common: Vec<f64>,
     places: usize,
 }
 
@@ -67,6 +69,7 @@ impl Samples {
             cosines: Vec::new(),
             weights: Vec::new(),
             values: Vec::new(),
+            common: Vec::new(),
             places: table.coverage().0,
         };
         let both = matches!(table, Table::HalfAngle(_));
@@ -118,9 +121,22 @@ impl Samples {
                 errors.chunks_exact(bands).zip(&cosines).map(of).collect()
             }
         };
-        let mut out = Self { channels, directions, cosines, weights, values, places };
+        let mut out = Self { channels, directions, cosines, weights, values, common: Vec::new(), places };
         out.normalise();
         Ok(out)
+    }
+
+    /// The same with an error that all values have in common: by how much each of them, in 1/sr and in the order of the values, would be off if one
+    /// quantity that they rest on were off by its standard uncertainty. It does not move a fit; its standard errors have it in them.
+    ///
+    /// # Errors
+    /// [`Error::NoPlaces`] where there are not as many as values.
+    pub fn with_common(mut self, common: Vec<f64>) -> Result<Self, Error> {
+        if common.len() != self.values.len() {
+            return Err(Error::NoPlaces { places: self.places, max_theta_deg: 90.0 });
+        }
+        self.common = common;
+        Ok(self)
     }
 
     fn normalise(&mut self) {
@@ -171,12 +187,19 @@ impl Samples {
         let chosen: Vec<usize> = (0..count)
             .map(|i| (((i as f64 + random.uniform()) / count as f64 * n as f64) as usize).min(n - 1))
             .collect();
+        let of = |all: &[f64]| -> Vec<f64> {
+            if all.is_empty() {
+                return Vec::new();
+            }
+            chosen.iter().flat_map(|i| &all[i * bands..][..bands]).copied().collect()
+        };
         let mut out = Self {
             channels: self.channels.clone(),
             directions: chosen.iter().map(|i| self.directions[*i]).collect(),
             cosines: chosen.iter().map(|i| self.cosines[*i]).collect(),
             weights: chosen.iter().map(|i| self.weights[*i]).collect(),
-            values: chosen.iter().flat_map(|i| &self.values[i * bands..][..bands]).copied().collect(),
+            values: of(&self.values),
+            common: of(&self.common),
             places: self.places,
         };
         out.normalise();

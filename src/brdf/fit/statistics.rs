@@ -3,15 +3,15 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::metric::Metric;
-use super::objective::Objective;
+use super::objective::{Objective, Sums};
 use crate::math::least_squares::{End, Minimum, invert};
 
 /// What is known of an estimate's error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Uncertainty {
-    /// Standard error under equal variances, and the robust one.
+    /// Standard error under equal variances, and the robust one; a common error of the samples is in both.
     Known {
-        /// s² (JᵀWJ)⁻¹.
+        /// The root of s² (JᵀWJ)⁻¹ (and of the square of what the common error moves it by).
         standard: f64,
         /// Of any variances.
         robust: f64,
@@ -88,7 +88,7 @@ pub(super) fn spread(objective: &Objective<'_>, found: &Minimum, metric: Metric)
     let (mut condition, mut weak) = (1.0, vec![false; coordinates.count]);
     let mut covariances: Option<(DMatrix<f64>, DMatrix<f64>)> = None;
     let mut criteria = None;
-    if let Some((at, meat)) = central {
+    if let Some(Sums { at, meat, common }) = central {
         criteria = Criteria::new(at.cost, n, coordinates.count);
         let inverse = invert(&at.normal, &free);
         condition = inverse.condition;
@@ -101,9 +101,12 @@ pub(super) fn spread(objective: &Objective<'_>, found: &Minimum, metric: Metric)
             derivatives[p].iter().filter(|(v, _)| *v == free[i]).map(|(_, d)| *d).sum::<f64>()
         });
         let filling = DMatrix::from_fn(free.len(), free.len(), |r, c| meat[(free[r], free[c])]);
-        let standard: DMatrix<f64> = &turn * (&inverse.matrix * (at.cost / freedom)) * turn.transpose();
+        // What the common error moves the parameters by: all of them at once.
+        let moved = &turn * (&inverse.matrix * DVector::from_fn(free.len(), |r, _| common[free[r]]));
+        let shared = &moved * moved.transpose();
+        let standard: DMatrix<f64> = &turn * (&inverse.matrix * (at.cost / freedom)) * turn.transpose() + &shared;
         let robust: DMatrix<f64> =
-            &turn * (&inverse.matrix * filling * &inverse.matrix * (n as f64 / freedom)) * turn.transpose();
+            &turn * (&inverse.matrix * filling * &inverse.matrix * (n as f64 / freedom)) * turn.transpose() + shared;
         covariances = Some((standard, robust));
     }
     let state = |p: usize, value: f64| {

@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::error::{Error, ErrorKind};
 use super::text::{Line, Word, decode, lines};
 use crate::brdf::coordinates::Parameterisation;
-use crate::brdf::table::{Channel, Points};
+use crate::brdf::table::{Channel, Known, Points};
 use crate::finding::{Checked, Finding};
 use crate::geometry::direction::{from_angles, from_degrees, phi, theta};
 
@@ -134,18 +134,35 @@ fn incomplete(
 /// their mean, as the pole of a grid does, and are counted.
 #[must_use]
 pub fn write(table: &Points) -> Checked<String> {
+    written(table, None)
+}
+
+/// The same with a column `known`, `measured` or `inferred`, of how each point is known: `known` has one for each. Readers of [`parse`] do
+/// without it. A place of several points is known as the least of them is.
+///
+/// # Panics
+/// Where `known` is not as long as the table.
+#[must_use]
+pub fn write_known(table: &Points, known: &[Known]) -> Checked<String> {
+    assert_eq!(known.len(), table.len(), "one mark per point");
+    written(table, Some(known))
+}
+
+fn written(table: &Points, known: Option<&[Known]>) -> Checked<String> {
     let n = table.channels().len();
-    let mut rows: Vec<([DVec3; 2], f64)> = Vec::with_capacity(table.len());
+    let mut rows: Vec<([DVec3; 2], f64, Known)> = Vec::with_capacity(table.len());
     let mut means: Vec<f64> = Vec::with_capacity(table.len() * n);
     let mut places: HashMap<[i64; 6], usize> = HashMap::with_capacity(table.len());
-    for (incident, outgoing, values) in table.iter() {
+    for (number, (incident, outgoing, values)) in table.iter().enumerate() {
+        let how = known.map_or(Known::Measured, |k| k[number]);
         let pair = if table.is_isotropic() { unturned(incident, outgoing) } else { [incident, outgoing] };
         let place = *places.entry(same_place(&pair)).or_insert(rows.len());
         if place == rows.len() {
-            rows.push((pair, 0.0));
+            rows.push((pair, 0.0, how));
             means.resize(means.len() + n, 0.0);
         }
         rows[place].1 += 1.0;
+        rows[place].2 = rows[place].2.max(how);
         let count = rows[place].1;
         // Equal values keep theirs to the last digit.
         means[place * n..][..n].iter_mut().zip(values).for_each(|(m, v)| *m += (v - *m) / count);
@@ -158,13 +175,18 @@ pub fn write(table: &Points) -> Checked<String> {
             Channel::Named(name) => name.replace([',', ';', '\t', '\n'], " "),
         })
         .collect();
-    let mut out = format!("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,{column},value\n");
-    for (([incident, outgoing], _), means) in rows.iter().zip(means.chunks_exact(n)) {
+    let more = if known.is_some() { ",known" } else { "" };
+    let mut out = format!("theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,{column},value{more}\n");
+    for (([incident, outgoing], _, how), means) in rows.iter().zip(means.chunks_exact(n)) {
         // Rounding of the directions, which would make 14.999999999999998° of 15°, is not written.
         let degrees = |rad: f64| (rad.to_degrees() * 1e12).round() / 1e12;
         let [ti, pi, to, po] = [theta(*incident), phi(*incident), theta(*outgoing), phi(*outgoing)].map(degrees);
         for (name, mean) in names.iter().zip(means) {
-            let _ = writeln!(out, "{ti},{pi},{to},{po},{name},{mean}");
+            let _ = write!(out, "{ti},{pi},{to},{po},{name},{mean}");
+            if known.is_some() {
+                let _ = write!(out, ",{how}");
+            }
+            out.push('\n');
         }
     }
     let mut findings = Vec::new();

@@ -12,7 +12,7 @@
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 
 use super::error::{Error, ErrorKind};
-use crate::brdf::table::{Channel, HalfAngle, Resolution};
+use crate::brdf::table::{Channel, HalfAngle, Known, Resolution};
 use crate::finding::{Checked, Finding, Location};
 
 /// Bytes of the three numbers of bins.
@@ -143,4 +143,24 @@ pub fn write(table: &HalfAngle) -> Option<Vec<u8>> {
         }
     }
     Some(out)
+}
+
+/// How each bin of a table is known, as the bytes of a file beside it: the three numbers of bins as in the table's own file, then a byte per
+/// bin in its order, 0 missing, 1 inferred, 2 measured. A bin that [`write()`] has to mark as missing, for a value below zero, is missing here too.
+///
+/// # Panics
+/// Where there is not one entry for each bin.
+#[must_use]
+pub fn mask(table: &HalfAngle, known: &[Known]) -> Vec<u8> {
+    let Resolution { theta_h, theta_d, phi_d } = table.resolution();
+    assert_eq!(known.len(), table.resolution().bins(), "one mark per bin");
+    let code = |(bin, known): (usize, &Known)| match known {
+        _ if table.bin(bin).iter().any(|v| *v < 0.0) => 0,
+        Known::Missing => 0,
+        Known::Inferred => 1,
+        Known::Measured => 2,
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "at most 360")]
+    let header = [theta_h, theta_d, phi_d].into_iter().flat_map(|n| (n as u32).to_le_bytes());
+    header.chain(known.iter().enumerate().map(code)).collect()
 }

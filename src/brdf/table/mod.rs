@@ -53,6 +53,16 @@ pub enum Known {
     Missing,
 }
 
+impl fmt::Display for Known {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Measured => "measured",
+            Self::Inferred => "inferred",
+            Self::Missing => "missing",
+        })
+    }
+}
+
 /// A place of a table at which there is a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry<'a> {

@@ -8,14 +8,14 @@ use crate::capture::merge::State;
 use crate::capture::radiance::Radiance;
 use crate::capture::setup::Place;
 
-/// The part of a picture that shows the sphere, as a square, and the same from a model.
+/// The part of a picture that shows the object, as a square, and the same from a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Maps {
     /// Columns and rows.
     pub side: usize,
     /// Radiance of the picture over that of a sample of 1 at 1 s: rows from the top, bands side by side.
     pub measured: Vec<f64>,
-    /// The same by the model, 0 beside the sphere and where it is not lit.
+    /// The same by the model, 0 beside the object and where it is not lit.
     pub modelled: Vec<f64>,
     /// Measured over modelled less 1, the mean over bands; NaN where there is no measurement.
     pub residual: Vec<f32>,
@@ -36,7 +36,7 @@ impl Maps {
 }
 
 impl Scene {
-    /// A picture and what `brdf` says that it should be, on at most `side` × `side` of its pixels; `None` where it does not show the sphere.
+    /// A picture and what `brdf` says that it should be, on at most `side` × `side` of its pixels; `None` where it does not show the object.
     /// `strength` is as for [`Scene::observe`], with as many bands as picture and model.
     #[must_use]
     pub fn maps(
@@ -49,10 +49,10 @@ impl Scene {
     ) -> Option<Maps> {
         let bands = picture.channels;
         let pixel = |x: usize, y: usize| DVec2::new(x as f64, y as f64);
-        // Every fourth pixel finds the sphere; a margin of eight makes up for it.
+        // Every fourth pixel finds the object; a margin of eight makes up for it.
         let (mut low, mut high) = ((usize::MAX, usize::MAX), (0, 0));
         for y in (0..picture.height).step_by(4) {
-            for x in (0..picture.width).step_by(4).filter(|x| self.normal(pixel(*x, y)).is_some()) {
+            for x in (0..picture.width).step_by(4).filter(|x| self.hit(pixel(*x, y)).is_some()) {
                 low = (low.0.min(x), low.1.min(y));
                 high = (high.0.max(x), high.1.max(y));
             }
@@ -78,18 +78,24 @@ impl Scene {
                 continue;
             }
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-            let samples = (y as usize * picture.width + x as usize) * bands..;
-            let samples = samples.start..samples.start + bands;
+            let (x, y) = (x as usize, y as usize);
+            let first = (y * picture.width + x) * bands;
+            let samples = first..first + bands;
             let here = at * bands..(at + 1) * bands;
             for (to, i) in out.measured[here.clone()].iter_mut().zip(samples.clone()) {
                 *to = f64::from(picture.values[i]) / picture.time_s;
             }
-            let Some(view) = self.view(DVec2::new(x, y), place).filter(|v| v.irradiance > 0.0) else { continue };
+            let Some(spot) = self.spot(x, y, place) else { continue };
+            let view = self.view_of(&spot.hit, place);
+            if view.irradiance <= 0.0 {
+                continue;
+            }
             brdf.evaluate(view.incident, view.outgoing, &mut f);
             for (to, (f, s)) in out.modelled[here.clone()].iter_mut().zip(f.iter().zip(strength)) {
                 *to = f * s * view.irradiance;
             }
-            if self.is_within_limits(&view) && self.state(picture, samples) == State::Valid {
+            let whole = !spot.edge && !spot.shadow;
+            if whole && self.is_within_limits(&view) && self.state(picture, samples) == State::Valid {
                 let each = out.measured[here.clone()].iter().zip(&out.modelled[here]).map(|(m, l)| m / l - 1.0);
                 #[expect(clippy::cast_possible_truncation, reason = "a picture")]
                 let mean = (each.sum::<f64>() / bands as f64) as f32;

@@ -1,36 +1,44 @@
-//! From pictures of a sphere to its BRDF: every valid pixel is one measurement.
+//! From pictures of an object of known shape to its BRDF: every valid pixel is one measurement.
 //!
 //! ```text
 //! f_r = L / E      E = I cosθ_i / d²  (near light)      E = E_n cosθ_i  (distant light)
 //! ```
 //!
-//! The pixel's ray is that of its centre through the lens; where it meets the sphere gives point and normal. σ is that of the radiance
-//! alone, divided by E: errors of camera, sphere and lights are not in it. A sphere lights no part of itself and casts no shadow on itself
-//! but the attached one, so nothing else has to be masked.
+//! The pixel's ray is that of its centre through the lens; where it meets the surface gives point and normal. σ is that of the radiance
+//! alone, divided by E: errors of camera, object and lights are not in it. A sphere lights no part of itself and casts no shadow on itself
+//! but the attached one, so nothing else has to be masked. Of other shapes, pixels of which a corner sees another part or none are masked as
+//! silhouette; of meshes also those to which the object itself stands before the light, and those whose hemisphere it fills too much of.
 //!
 //! A sensor averages over the area of a pixel: a lobe in its picture is wider than it is. L is therefore corrected to the pixel's centre by
 //! 1/24 of the Laplacian of the picture.
 //!
 //! - [`Scene::observe`]: the measurements of one picture, and how many pixels were masked for which reason.
-//! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere.
-//! - [`Scene::maps`]: a picture beside what a model says; [`reciprocity`]: of the measurements themselves; [`next_lights`]: what to photograph
+//! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere;
+//!   [`Filled`]: bins that nobody measured, on request.
+//! - [`Scene::maps`]: a picture beside what a model says; [`deviations`]: pictures that disagree with the others; [`reciprocity`]: of the measurements themselves; [`next_lights`]: what to photograph
 //!   next.
 //!
 //! Reference: W. Matusik et al., *A Data-Driven Reflectance Model*, ACM Trans. Graph. 22 (2003), for the principle.
 
+mod agreement;
 mod bins;
+mod fill;
 mod maps;
 mod next;
 mod observe;
 mod reciprocity;
 mod scale;
+mod surface;
 
+pub use agreement::{apart, deviations};
 pub use bins::{Bin, Binned, bin};
+pub use fill::Filled;
 pub use maps::Maps;
 pub use next::{Next, next_lights};
 pub use observe::{Counts, Limits, Scene, Seen, View};
 pub use reciprocity::{Reciprocity, reciprocity};
 pub use scale::{Strength, reference_factor_sd, strength_from};
+pub use surface::{Hit, Surface};
 
 use glam::DVec3;
 
@@ -48,6 +56,8 @@ pub struct Observations {
     pub values: Vec<f64>,
     /// Standard errors in the same order; 0 where nobody stated one.
     pub errors: Vec<f64>,
+    /// What was added to the values because a pixel is an average, in the same order ([`Seen::corrections`]).
+    pub corrections: Vec<f32>,
 }
 
 impl Observations {
@@ -55,7 +65,14 @@ impl Observations {
     #[must_use]
     pub fn new(bands: usize) -> Self {
         let channels = if bands == 3 { Channel::rgb() } else { vec![Channel::Named("Y".to_owned()); bands] };
-        Self { channels, directions: Vec::new(), values: Vec::new(), errors: Vec::new() }
+        Self { channels, directions: Vec::new(), values: Vec::new(), errors: Vec::new(), corrections: Vec::new() }
+    }
+
+    /// None yet, in narrow bands: one for each wavelength.
+    #[must_use]
+    pub fn of_wavelengths(wavelengths_nm: &[f64]) -> Self {
+        let channels = wavelengths_nm.iter().map(|nm| Channel::Wavelength(*nm)).collect();
+        Self { channels, ..Self::new(0) }
     }
 
     /// Adds one.
@@ -63,6 +80,8 @@ impl Observations {
         self.directions.push((seen.incident, seen.outgoing));
         self.values.extend_from_slice(seen.values);
         self.errors.extend_from_slice(seen.errors);
+        #[expect(clippy::cast_possible_truncation, reason = "small beside the values")]
+        self.corrections.extend(seen.corrections.iter().map(|c| *c as f32));
     }
 
     /// How many there are.
@@ -86,14 +105,21 @@ impl Observations {
     /// Multiplies all values and errors.
     pub fn scale(&mut self, factor: f64) {
         self.values.iter_mut().chain(&mut self.errors).for_each(|v| *v *= factor);
+        #[expect(clippy::cast_possible_truncation, reason = "as the corrections are kept")]
+        self.corrections.iter_mut().for_each(|c| *c *= factor as f32);
     }
 
-    /// For a fit: weighted by 1/σ² where all σ are known, else alike.
+    /// For a fit: weighted by 1/σ² where all σ are known, else alike. `pixel_variance_sd` is the relative standard uncertainty of the variance
+    /// of the places that pixels are averages over ([`Scene::pixel_variance_sd`]), an error that all have in common.
     ///
     /// # Errors
     /// [`fit::Error::NoPlaces`] for none.
-    pub fn samples(&self) -> Result<Samples, fit::Error> {
+    pub fn samples(&self, pixel_variance_sd: f64) -> Result<Samples, fit::Error> {
         let errors = self.has_errors().then_some(self.errors.as_slice());
-        Samples::scattered(self.channels.clone(), self.directions.clone(), self.values.clone(), errors)
+        let all = Samples::scattered(self.channels.clone(), self.directions.clone(), self.values.clone(), errors)?;
+        if pixel_variance_sd <= 0.0 {
+            return Ok(all);
+        }
+        all.with_common(self.corrections.iter().map(|c| pixel_variance_sd * f64::from(*c)).collect())
     }
 }

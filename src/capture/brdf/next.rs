@@ -2,14 +2,16 @@
 //!
 //! A sphere shows all normals at once, so that a light is told by one number, its angle α to the camera as seen from the sphere: α is twice
 //! the difference angle θ_d of all that it gives, and on which side of the camera it stands makes no difference to an isotropic material.
-//! Lights at α from 0° to 175° are tried; each is counted by the bins that it would be the first to cover, and the best is taken before the next one
+//! Other shapes are looked at from eight sides besides. Lights at α from 0° to 175° are tried; each is counted by the bins that it would be the first to cover, and the best is taken before the next one
 //! is looked for.
 
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
-use super::{Binned, Scene};
+use super::{Binned, Hit, Scene};
 use crate::brdf::coordinates::HalfDiff;
 use crate::brdf::table::Resolution;
 use crate::capture::setup::Place;
@@ -20,15 +22,17 @@ const COARSE: Resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 60 };
 const STEP_DEG: f64 = 5.0;
 /// Steps of α.
 const STEPS: u32 = 36;
-/// Pixels that are looked at, about.
+/// Sides of the camera on which lights are tried where that makes a difference.
+const SIDES: u32 = 8;
+/// Pixels that are looked at for one side, about.
 const PIXELS: usize = 40_000;
 
 /// A light to be added.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Next {
-    /// Its angle to the camera as seen from the middle of the sphere, degrees.
+    /// Its angle to the camera as seen from the middle of the object, degrees.
     pub to_camera_deg: f64,
-    /// One such direction from the middle of the sphere, to the right of the camera.
+    /// Its direction from the middle of the object; of a sphere, one to the right of the camera.
     pub direction: [f64; 3],
     /// Bins that it would be the first to cover, of those that any light can cover from this camera.
     pub new_bins: usize,
@@ -40,12 +44,19 @@ pub struct Next {
 /// within reach of this camera and any light that is covered now, 0 to 1.
 #[must_use]
 pub fn next_lights(scene: &Scene, size: (usize, usize), binned: &Binned, count: usize) -> (f64, Vec<Next>) {
-    let every = ((size.0 * size.1 / PIXELS) as f64).sqrt().floor().max(1.0);
+    let sides = if scene.is_sphere() { 1 } else { SIDES };
+    let every = ((size.0 * size.1 * sides as usize / PIXELS) as f64).sqrt().floor().max(1.0);
+    let hits = hits(scene, size, every);
     let candidates: Vec<(f64, [f64; 3], HashSet<usize>)> = (0..STEPS)
-        .map(|n| {
+        .into_par_iter()
+        .flat_map_iter(|n| (0..sides).map(move |side| (n, side)))
+        // Before the camera and behind the object all sides are one.
+        .filter(|(n, side)| *n > 0 || *side == 0)
+        .map(|(n, side)| {
             let to_camera_deg = STEP_DEG * f64::from(n);
-            let direction = scene.beside_camera(to_camera_deg.to_radians());
-            (to_camera_deg, direction.to_array(), covered_by(scene, size, every, Place::Distant(direction.to_array())))
+            let azimuth = f64::from(side) / f64::from(sides) * TAU;
+            let direction = scene.beside_camera(to_camera_deg.to_radians(), azimuth).to_array();
+            (to_camera_deg, direction, covered_by(scene, &hits, Place::Distant(direction)))
         })
         .collect();
     let reach: HashSet<usize> = candidates.iter().flat_map(|c| c.2.iter().copied()).collect();
@@ -73,10 +84,15 @@ pub fn next_lights(scene: &Scene, size: (usize, usize), binned: &Binned, count: 
     (now, out)
 }
 
-/// Bins that a light would cover.
-fn covered_by(scene: &Scene, size: (usize, usize), every: f64, place: Place) -> HashSet<usize> {
+/// What pixels see of the object.
+fn hits(scene: &Scene, size: (usize, usize), every: f64) -> Vec<Hit> {
     let (columns, rows) = ((size.0 as f64 / every) as u32, (size.1 as f64 / every) as u32);
     let pixels = (0..rows).flat_map(|y| (0..columns).map(move |x| DVec2::new(f64::from(x), f64::from(y)) * every));
-    let seen = pixels.filter_map(|p| scene.view(p, place)).filter(|v| scene.is_within_limits(v));
+    pixels.filter_map(|p| scene.hit(p)).collect()
+}
+
+/// Bins that a light would cover.
+fn covered_by(scene: &Scene, hits: &[Hit], place: Place) -> HashSet<usize> {
+    let seen = hits.iter().map(|hit| scene.view_of(hit, place)).filter(|v| scene.is_within_limits(v));
     seen.map(|v| COARSE.bin(&HalfDiff::new(v.incident, v.outgoing))).collect()
 }

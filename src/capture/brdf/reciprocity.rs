@@ -66,6 +66,7 @@ mod tests {
             directions: vec![at(1.0), at(1.0 + PI), at(2.0)],
             values: vec![0.9, 1.1, 5.0],
             errors: vec![0.0; 3],
+            corrections: vec![0.0; 3],
         };
         let found = reciprocity(&all, Resolution::MERL).expect("one pair");
         // 2 · 0.2/2; the third has no partner.

@@ -1,19 +1,25 @@
 //! The corners of a chessboard in a photograph: found and labelled by the crate `calib-targets-chessboard`, then placed here, at the
-//! photograph's full depth, where all gradients around them point past them.
+//! photograph's full depth, in the saddle of the luma around them.
 //!
-//! Reference for the placing: W. Förstner and E. Gülch, *A fast operator for detection and precise location of distinct points, corners
-//! and centres of circular features*, ISPRS 1987.
+//! A quadratic polynomial is fitted to a disc about a corner, a quarter of the way to the next one, by weights that fall to 0 at its rim; its saddle is the
+//! next middle of the disc, until it rests. Black and white are alike to it, and noise is averaged over the disc: on boards with little else
+//! than noise, corners scatter by half of what they do where gradients place them.
+//!
+//! Reference for the placing: S. Placht et al., *ROCHADE: Robust Checkerboard Advanced Detection for Camera Calibration*, ECCV 2014.
 
 use calib_targets_chessboard::{
     ChessboardDetector, ChessboardParams, GrayImageView, default_chess_config, detect_corners,
 };
 use glam::{DMat2, DVec2};
+use nalgebra::{SMatrix, SVector};
 
 use super::View;
 use crate::capture::{Error, Photo};
 
-/// Pixels on either side of a corner that place it, at most; fewer where squares are small.
-const REACH: usize = 5;
+/// Radius of the disc that places a corner, of the distance to the next one, and pixels that it has at least and at most.
+const SHARE: f64 = 0.25;
+const LEAST_REACH: f64 = 2.0;
+const MOST_REACH: f64 = 15.0;
 /// Rounds of placing.
 const ROUNDS: usize = 40;
 /// Movement of a corner, pixels, at which it is placed.
@@ -57,12 +63,12 @@ pub fn find_corners(name: &str, photo: &Photo, corners: [usize; 2], square: f64)
         .collect();
     labelled.sort_by_key(|(grid, _)| [grid[1], grid[0]]);
     let closest = labelled.windows(2).map(|w| w[0].1.distance(w[1].1)).fold(f64::INFINITY, f64::min);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a few pixels")]
-    let reach = (closest / 2.0 - 1.0).clamp(2.0, REACH as f64) as usize;
+    let disc = Disc::new((SHARE * closest).clamp(LEAST_REACH, MOST_REACH));
+    let disc = disc.ok_or_else(|| missing(format!("no disc about the corners of {name}")))?;
     Ok(View {
         name: name.to_owned(),
         board: labelled.iter().map(|(g, _)| DVec2::new(f64::from(g[0]), f64::from(g[1])) * square).collect(),
-        seen: labelled.iter().map(|(_, at)| picture.place(*at, reach)).collect(),
+        seen: labelled.iter().map(|(_, at)| picture.place(*at, &disc)).collect(),
     })
 }
 
@@ -85,35 +91,51 @@ impl Picture<'_> {
             + t * ((1.0 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1))
     }
 
-    /// Where Σ w g gᵀ (p − q) = 0 over the surroundings of q: every gradient g is at right angles to the way from the corner to it.
-    fn place(&self, start: DVec2, reach: usize) -> DVec2 {
+    /// The saddle of the luma near a place.
+    fn place(&self, start: DVec2, disc: &Disc) -> DVec2 {
         let mut corner = start;
         for _ in 0..ROUNDS {
-            let (mut matrix, mut right) = (DMat2::ZERO, DVec2::ZERO);
-            let side = reach as f64;
-            for j in 0..=2 * reach {
-                for i in 0..=2 * reach {
-                    let away = DVec2::new(i as f64 - side, j as f64 - side);
-                    let at = corner + away;
-                    let g = DVec2::new(
-                        self.at(at.x + 1.0, at.y) - self.at(at.x - 1.0, at.y),
-                        self.at(at.x, at.y + 1.0) - self.at(at.x, at.y - 1.0),
-                    );
-                    let w = (-away.length_squared() / side.powi(2)).exp();
-                    let outer = DMat2::from_cols(g * g.x, g * g.y) * w;
-                    matrix += outer;
-                    right += outer * away;
-                }
+            let mut q = [0.0; TERMS];
+            for (away, solution) in &disc.places {
+                let luma = self.at(corner.x + away.x, corner.y + away.y);
+                q.iter_mut().zip(solution).for_each(|(q, s)| *q += s * luma);
             }
-            if matrix.determinant().abs() <= f64::EPSILON * matrix.x_axis.x.max(matrix.y_axis.y).powi(2) {
+            // Of q₀x² + q₁xy + q₂y² + q₃x + q₄y + q₅: where its gradient is 0, if that is a saddle.
+            let curvature = DMat2::from_cols_array(&[2.0 * q[0], q[1], q[1], 2.0 * q[2]]);
+            if curvature.determinant() >= 0.0 {
                 return start;
             }
-            let step = matrix.inverse() * right;
+            let step = -(curvature.inverse() * DVec2::new(q[3], q[4]));
             corner += step;
             if step.length() < AT_REST {
                 break;
             }
         }
         if corner.distance(start) <= MOST_MOVED { corner } else { start }
+    }
+}
+
+/// Terms of a quadratic polynomial of two variables.
+const TERMS: usize = 6;
+
+/// Pixels about a corner, and what each contributes to the terms of the polynomial.
+struct Disc {
+    places: Vec<(DVec2, [f64; TERMS])>,
+}
+
+impl Disc {
+    /// A disc of some radius, with weights that fall as a cone: (MᵀWM)⁻¹ MᵀW. `None` where that has no inverse.
+    fn new(reach: f64) -> Option<Self> {
+        #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+        let side = reach.ceil() as i32;
+        let all = (-side..=side).flat_map(|y| (-side..=side).map(move |x| DVec2::new(f64::from(x), f64::from(y))));
+        let weight = |p: &DVec2| (reach + 1.0 - p.length()).max(0.0);
+        let terms = |p: &DVec2| SVector::<f64, TERMS>::from([p.x * p.x, p.x * p.y, p.y * p.y, p.x, p.y, 1.0]);
+        let places: Vec<DVec2> = all.filter(|p| weight(p) > 0.0).collect();
+        let normal: SMatrix<f64, TERMS, TERMS> =
+            places.iter().map(|p| terms(p) * terms(p).transpose() * weight(p)).sum();
+        let inverse = normal.try_inverse()?;
+        let places = places.into_iter().map(|p| (p, (inverse * terms(&p) * weight(&p)).into()));
+        Some(Self { places: places.collect() })
     }
 }

@@ -11,6 +11,7 @@ mod plot;
 
 use clap::Subcommand;
 
+pub(super) use compress::open_basis;
 pub(super) use numbers::Bins;
 
 use super::{Failure, Talk};

@@ -157,6 +157,11 @@ impl Darkroom {
                 .push(Finding::warning("K026", words).hint("is it evenly lit, out of focus and clean?").at(place));
         }
         if let Some(stated) = &photos.manifest.flat {
+            if !photos.manifest.wavelengths_nm().is_empty() {
+                let words = "found a [flat] of known radiance beside stacks of narrow bands, whose filters it does not tell; expected strengths \
+                             of the lights with unit_w_per_m2_sr, or a reference";
+                return Err(Failure::Message(words.to_owned()));
+            }
             let (bands, level) = (&stated.radiance, &found.level);
             if bands.len() != 1 && bands.len() != level.len() {
                 return Err(Failure::Message(format!(
@@ -185,6 +190,10 @@ impl Darkroom {
         }
         if let Some(scale) = self.scale.as_ref().filter(|s| s.len() == picture.channels) {
             picture.scale(scale);
+        }
+        if picture.states.is_some() {
+            // What merging took as valid may still be beyond the limits of the manifest.
+            picture.mark(&photos.manifest.radiance);
         }
         Ok((picture, name))
     }

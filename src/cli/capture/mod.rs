@@ -1,7 +1,6 @@
 //! `capture`: photographs of known geometry; one file per verb.
 
 mod brdf;
-mod brdf_report;
 mod calibrate;
 mod develop;
 mod lights;

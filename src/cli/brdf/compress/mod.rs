@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use crate::brdf::compress::file::{BasisFile, Checksum};
+use crate::brdf::format::merl;
 use crate::brdf::table::{HalfAngle, Known};
 use crate::cli::output::{overwrites, same_file, write_files};
 use crate::cli::{Failure, Talk};
@@ -75,15 +76,6 @@ struct Reconstructed {
     json: bool,
 }
 
-/// Bytes of a mask.
-fn mask_code(known: Known) -> u8 {
-    match known {
-        Known::Missing => 0,
-        Known::Inferred => 1,
-        Known::Measured => 2,
-    }
-}
-
 impl Reconstructed {
     /// Writes table and mask, `known` having an entry per bin of the table.
     fn write(&self, table: &HalfAngle, known: &[Known], inputs: &[String]) -> Result<(), Failure> {
@@ -96,13 +88,12 @@ impl Reconstructed {
             let message = format!("--mask {}: is the output as well; expected another file", self.output.display());
             return Err(Failure::Message(message));
         }
-        let Some(bytes) = crate::brdf::format::merl::write(table) else {
+        let Some(bytes) = merl::write(table) else {
             let message =
                 format!("{} channels; expected three: a MERL binary holds red, green and blue", table.channels().len());
             return Err(Failure::Message(message));
         };
-        let header = &bytes[..12];
-        let mask: Vec<u8> = header.iter().copied().chain(known.iter().map(|k| mask_code(*k))).collect();
+        let mask = merl::mask(table, known);
         let mut files = vec![(self.output.clone(), &bytes[..])];
         files.extend(self.mask.clone().map(|path| (path, &mask[..])));
         write_files(&files)
@@ -110,7 +101,7 @@ impl Reconstructed {
 }
 
 /// Reads a basis; messages name the file.
-fn open_basis(path: &str) -> Result<(BasisFile, Checksum), Failure> {
+pub(in crate::cli) fn open_basis(path: &str) -> Result<(BasisFile, Checksum), Failure> {
     let wrong = |e: &dyn std::fmt::Display| Failure::Message(format!("{path}: {e}"));
     let read = if path == "-" {
         BasisFile::read(&mut io::stdin().lock())

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
-use super::develop::Darkroom;
-use super::photos::Photos;
+use super::shots::shots;
 use crate::brdf::audit::{self, audit};
-use crate::brdf::fit::Fit;
+use crate::brdf::fit::{Fit, wavelengths};
 use crate::capture::brdf::{Scene, next_lights, reciprocity};
+use crate::capture::manifest::Shows;
 use crate::cli::Failure;
+use crate::cli::capture::develop::Darkroom;
+use crate::cli::capture::photos::Photos;
 use crate::cli::output::write_file;
 use crate::plot::brdf::{Tint, albedo_panel, sphere_panel};
 use crate::plot::capture::{coverage_panel, halves_panel, maps_panels, response_panel};
@@ -50,8 +52,9 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     let pictures = pictures(photos, room, scene, shown, more)?;
     let Some(camera) = &photos.manifest.camera else { return Ok(()) };
+    let title = format!("BRDF of a photographed {}", scene.kind());
     let parts = Parts {
-        title: photos.manifest.title.as_deref().unwrap_or("BRDF of a photographed sphere"),
+        title: photos.manifest.title.as_deref().unwrap_or(&title),
         answer: shown,
         more,
         inputs: &photos.inputs,
@@ -72,13 +75,15 @@ fn pictures(
     more: &mut More,
 ) -> Result<Pictures, Failure> {
     let names: Vec<String> = shown.all.channels.iter().map(ToString::to_string).collect();
-    let mut out = Pictures {
-        coverage: vec![figure(
-            coverage_panel(shown.binned).into(),
-            "Measured part of the azimuths φd, by half angle θh and difference angle θd.",
-        )?],
-        ..Pictures::default()
+    let filled = shown.filling.map(|f| &f.filled);
+    let caption = match filled {
+        None => "Measured part of the azimuths φd, by half angle θh and difference angle θd.",
+        Some(_) => {
+            "Measured part of the azimuths φd, by half angle θh and difference angle θd. Orange: nothing measured, inferred."
+        }
     };
+    let coverage = vec![figure(coverage_panel(shown.binned, filled).into(), caption)?];
+    let mut out = Pictures { coverage, ..Pictures::default() };
     if let Some(curves) = room.curves() {
         let channels: Vec<String> = (0..curves.len()).map(|c| channel_name(curves.len(), c).to_owned()).collect();
         let caption = "The response: exposure that belongs to a code.";
@@ -89,7 +94,10 @@ fn pictures(
         let caption = format!("Bins with φd near 90° and {}, band {name}.", fit.template);
         out.lobes.push(figure(halves_panel(shown.binned, fit.brdf.as_ref(), band, name).into(), &caption)?);
     }
-    let tint = Tint::of_channels(names.len());
+    let tint = match wavelengths(&shown.all.channels) {
+        Some(nm) => Tint::of_wavelengths(&nm),
+        None => Tint::of_channels(names.len()),
+    };
     let energy = "Albedo of the best model over the angle of incidence; above 1 it reflects more than arrives.";
     out.energy.push(figure(albedo_panel(fit.brdf.as_ref(), &names).into(), energy)?);
     let sphere = "The best model as a sphere under a small lamp.";
@@ -110,10 +118,9 @@ fn maps(
     tint: &Tint,
     more: &mut More,
 ) -> Result<Vec<Figure>, Failure> {
-    let Some(stack) = photos.manifest.stack.iter().find(|s| s.name == seen.name).cloned() else {
-        return Ok(Vec::new());
-    };
-    let (radiance, _) = room.picture(photos, &stack)?;
+    let shots = shots(&photos.manifest, Shows::Object)?;
+    let Some(shot) = shots.iter().find(|s| s.name == seen.name) else { return Ok(Vec::new()) };
+    let (radiance, _) = shot.picture(photos, room)?;
     // The values of a relative result were multiplied by the factor: the lights are weaker by it.
     let strength: Vec<f64> = seen.strength.iter().map(|s| s / factor).collect();
     let Some(maps) = scene.maps(&radiance, seen.place, &strength, fit.brdf.as_ref(), SIDE) else {

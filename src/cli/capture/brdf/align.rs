@@ -1,0 +1,73 @@
+//! The camera and the edge of the sphere.
+
+use crate::capture::camera::{Edge, fit_to_sphere};
+use crate::capture::lights::outline::Outline;
+use crate::capture::lights::view::{Ball, View};
+use crate::capture::manifest::{Shows, Stack};
+use crate::cli::Failure;
+use crate::cli::capture::develop::Darkroom;
+use crate::cli::capture::photos::Photos;
+use crate::finding::Finding;
+
+use super::message;
+
+/// Brings a camera that the board told into line with the edge of the sphere in the brightest of all pictures.
+pub(super) fn align(photos: &mut Photos, room: &mut Darkroom) -> Result<Option<Edge>, Failure> {
+    let Some(calibration) = room.calibration.clone() else { return Ok(None) };
+    let (Some(sphere), Some(camera)) = (photos.manifest.sphere.clone(), photos.manifest.camera.clone()) else {
+        return Ok(None);
+    };
+    let view = View::new(Some(&camera)).map_err(message)?;
+    let stacks: Vec<Stack> = photos.manifest.stack.iter().filter(|s| s.shows == Shows::Object).cloned().collect();
+    let mut brightest: Option<(usize, Vec<f32>)> = None;
+    for stack in &stacks {
+        // What cannot be read is told when it is measured.
+        let Ok((picture, _)) = room.picture(photos, stack) else { continue };
+        let luma = picture.values.chunks_exact(picture.channels).map(|p| p.iter().sum::<f32>());
+        let (_, most) = brightest.get_or_insert_with(|| (picture.width, vec![0.0; picture.width * picture.height]));
+        most.iter_mut().zip(luma).for_each(|(m, v)| *m = m.max(v));
+        room.keep(stack, picture);
+    }
+    let centre = glam::DVec3::from_array(sphere.centre_m);
+    let seen = brightest.and_then(|(width, most)| {
+        let top = most.iter().copied().fold(0.0, f32::max).max(f32::MIN_POSITIVE);
+        let levels: Vec<f32> = most.iter().map(|v| v / top * 1e5).collect();
+        let expected = view.outline(&Ball { centre, radius: sphere.radius_m })?;
+        Outline::refined(&levels, width, &expected)
+    });
+    let errors = calibration.standard_errors;
+    let own = view.axes().transpose() * (centre - glam::DVec3::from_array(camera.position_m));
+    let edge = seen.and_then(|outline| {
+        let prior = (errors[2].max(errors[3]), errors[0].max(errors[1]) / calibration.camera.intrinsics.fx);
+        fit_to_sphere(calibration.camera, own, sphere.radius_m, &outline.points, prior)
+    });
+    match edge {
+        Some(edge) => {
+            let sigma = edge.moved_px.x / errors[2].max(1e-9);
+            let words = format!(
+                "the camera was brought into line with the edge of the sphere: principal point moved by {:.2}, {:.2} px, focal length by \
+                 {:.3} %; the edge is {:.2} px rms off",
+                edge.moved_px.x,
+                edge.moved_px.y,
+                100.0 * (edge.zoom - 1.0),
+                edge.rms_px
+            );
+            let far = sigma.abs().max((edge.moved_px.y / errors[3].max(1e-9)).abs()) > 4.0;
+            photos.findings.push(if far {
+                Finding::warning("K027", words)
+                    .hint("far more than the calibration allows: are camera and sphere where they are stated?")
+            } else {
+                Finding::info("K027", words)
+            });
+            if let Some(camera) = &mut photos.manifest.camera {
+                camera.set_lens(&edge.camera);
+            }
+            Ok(Some(edge))
+        }
+        None => {
+            let words = "no edge of the sphere was found: the camera is as the board told it";
+            photos.findings.push(Finding::warning("K027", words).hint("a dark background shows it"));
+            Ok(None)
+        }
+    }
+}
