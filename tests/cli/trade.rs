@@ -130,3 +130,86 @@ fn the_self_check_passes_and_has_a_row_per_case() {
     let (code, text, _) = run(&["selfcheck"]);
     assert!(code == 0 && text.contains("all as expected"), "{text}");
 }
+
+/// A lamp that ships with the tool.
+fn street() -> String {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/lamps/street.ies").display().to_string()
+}
+
+/// A number of the answer of a verb about lamps.
+fn of_lamp(arguments: &[&str], key: &str) -> f64 {
+    let (code, document, stderr) = run(&[arguments, &["--json"]].concat());
+    assert_eq!(code, 0, "{stderr}");
+    json(&document)["results"][0][key].as_f64().unwrap_or_else(|| panic!("{key} of {arguments:?}"))
+}
+
+#[test]
+fn a_lamp_with_fewer_angles_is_as_far_off_as_the_trade_says() {
+    let folder = Folder::new();
+    let (settings, best, picture) =
+        (inside(&folder, "few.toml"), inside(&folder, "best.toml"), inside(&folder, "trade.png"));
+    let street = street();
+    let trade = ["trade", "lamp", &street, "--repeats", "1", "--json", "--figure", "flux", "--error", "6%"];
+    let (code, document, stderr) = run(&[&trade[..], &["--settings", &best, "--plot", &picture]].concat());
+    assert_eq!(code, 0, "{stderr}");
+    let result = json(&document)["results"][0].clone();
+    // The reference is what `lamp info` says, its own error the other interpolation's.
+    let whole = of_lamp(&["lamp", "info", &street], "total_flux_lm");
+    let cubic = of_lamp(&["lamp", "info", &street, "--interpolation", "monotone-cubic"], "total_flux_lm");
+    let own = result["reference_errors"]["flux"].as_f64().expect("a number");
+    assert!((own - (cubic / whole - 1.0).abs()).abs() < 1e-12, "{own}, {cubic} of {whole}");
+    // `lamp convert` leaves out what settings say, and loses as much flux as the trade found.
+    let text =
+        "[lamp]\nevery_horizontal = 4\nevery_vertical = 4\ninterpolation = \"monotone-cubic\"\nnear_ratio = 0.0\n";
+    std::fs::write(&settings, text).expect("written");
+    let few = inside(&folder, "few.ies");
+    let (code, _, stderr) = run(&["lamp", "convert", &street, "-o", &few, "--settings", &settings]);
+    assert_eq!(code, 0, "{stderr}");
+    let trials = result["trials"].as_array().expect("trials");
+    let is = |t: &&Value, expected: [&str; 5]| {
+        let knobs = ["every_horizontal", "every_vertical", "interpolation", "near_ratio", "precision"];
+        knobs.iter().zip(expected).all(|(k, v)| t["settings"][*k] == v)
+    };
+    let trial = trials.iter().find(|t| is(t, ["4", "4", "monotone-cubic", "0", "f64"])).expect("it was tried");
+    let error = trial["errors"]["flux"]["error"].as_f64().expect("a number");
+    let found = of_lamp(&["lamp", "info", &few, "--interpolation", "monotone-cubic"], "total_flux_lm");
+    // Candelas are written as read, so that nothing but the angles differs.
+    assert!(((found / whole - 1.0).abs() - error).abs() < 1e-9 && error > 0.0, "{found} of {whole}, {error}");
+    // `lamp grid` takes the file, and the command line goes before it.
+    let mean = |options: &[&str]| {
+        let grid = ["lamp", "grid", &street, "--height", "3", "--plane", "-6,-6 6,6"];
+        of_lamp(&[&grid[..], options].concat(), "mean_illuminance_lx")
+    };
+    let coarse = mean(&["--settings", &settings]);
+    let same = mean(&["--settings", &settings, "--near", "0", "--interpolation", "monotone-cubic"]);
+    assert!(coarse == same && coarse != mean(&[]), "{coarse} {same}");
+    assert!(mean(&["--settings", &settings, "--near", "20"]) != coarse);
+    assert!(mean(&["--settings", &settings, "--interpolation", "bilinear"]) != coarse);
+    // What is recommended is what is written.
+    let written = std::fs::read_to_string(&best).expect("written");
+    let recommended = &result["recommended"];
+    assert!(recommended["error_bound"].as_f64().is_some_and(|e| e <= 0.06), "{recommended}");
+    for knob in ["every_horizontal", "every_vertical", "near_ratio"] {
+        let value = recommended["settings"][knob].as_str().expect("a word");
+        assert!(written.contains(&format!("{knob} = {value}")), "{knob} {value}: {written}");
+    }
+    assert!(std::fs::read(&picture).expect("written").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn lamps_and_settings_that_do_not_fit_are_told() {
+    let folder = Folder::new();
+    let wrong = inside(&folder, "wrong.toml");
+    std::fs::write(&wrong, "[lamp]\nevery_vertical = 0\n").expect("written");
+    let street = street();
+    for (arguments, expected) in [
+        (vec!["trade", "lamp", &street, "--height", "0"], "a mounting height of 0; expected a length above 0 m"),
+        (vec!["trade", "lamp", &street, "--figure", "taste"], "expected one of flux, peak_intensity"),
+        (vec!["trade", "lamp", &street, "--error", "3K"], "expected per cent"),
+        (vec!["trade", "lamp", "no.ies"], "no.ies: cannot be read"),
+        (vec!["lamp", "grid", &street, "--height", "3", "--settings", &wrong], "every 0th angle; expected 1"),
+    ] {
+        let (code, _, stderr) = run(&arguments);
+        assert!(code == 2 && stderr.contains(expected), "{arguments:?}: {code} {stderr}");
+    }
+}

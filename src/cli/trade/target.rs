@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use crate::cli::Failure;
-use crate::trade::{Figure, Measure};
+use crate::trade::{Figure, Measure, Sweep};
 
 /// An error as it is written: `0.5%`, `0.005`, `20K`.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,4 +52,16 @@ pub(super) fn place(figures: &[Figure], key: &str) -> Result<usize, Failure> {
         let known: Vec<&str> = figures.iter().map(|f| f.key.as_ref()).collect();
         Failure::Message(format!("`{key}`: no such figure; expected one of {}", known.join(", ")))
     })
+}
+
+/// Refuses a figure that the input does not have.
+pub(super) fn must_be_defined(path: &str, sweep: &Sweep, figure: usize) -> Result<(), Failure> {
+    if sweep.reference_errors[figure].is_some() {
+        return Ok(());
+    }
+    let defined = sweep.figures.iter().zip(&sweep.reference_errors).filter(|(_, e)| e.is_some());
+    let others: Vec<&str> = defined.map(|(f, _)| f.key.as_ref()).collect();
+    let message =
+        format!("{path}: has no {}; expected --figure with one of: {}", sweep.figures[figure].key, others.join(", "));
+    Err(Failure::Message(message))
 }
