@@ -52,7 +52,7 @@ pub struct Reduced<S> {
     source: S,
     description: Description,
     /// Per channel the channels that it is made of, and their weights.
-    parts: Vec<Vec<(usize, f64)>>,
+    parts: Vec<Parts>,
     block: usize,
     samples: Vec<f32>,
 }
@@ -69,7 +69,7 @@ impl<S: Source> Reduced<S> {
         let mut description = source.description().clone();
         description.width = description.width.div_ceil(block);
         description.height = description.height.div_ceil(block);
-        let mut parts: Vec<Vec<(usize, f64)>> = (0..description.channels.len()).map(|c| vec![(c, 1.0)]).collect();
+        let mut parts: Vec<Parts> = (0..description.channels.len()).map(|c| vec![(c, 1.0)]).collect();
         if let Some((count, how)) = bands {
             let own = description.bands();
             if count < 2 || count > own.len() {
@@ -77,7 +77,7 @@ impl<S: Source> Reduced<S> {
             }
             let made = made_of(&own, count, how);
             let unit = description.channels[own[0].0].unit.clone();
-            let channel = |(wavelength_nm, width, _): &(f64, f64, Vec<(usize, f64)>)| {
+            let channel = |(wavelength_nm, width, _): &(f64, f64, Parts)| {
                 let fwhm_nm = (how == Bands::Averaged).then_some(*width);
                 let meaning = Meaning::Band { wavelength_nm: *wavelength_nm, fwhm_nm, good: true };
                 Channel::new(format!("{wavelength_nm} nm"), unit.clone(), meaning)
@@ -89,8 +89,11 @@ impl<S: Source> Reduced<S> {
     }
 }
 
+/// Channels of an image, and the weight of each.
+type Parts = Vec<(usize, f64)>;
+
 /// Wavelength, width and parts of each of `count` bands made of others, ascending.
-fn made_of(own: &[(usize, f64)], count: usize, how: Bands) -> Vec<(f64, f64, Vec<(usize, f64)>)> {
+fn made_of(own: &[(usize, f64)], count: usize, how: Bands) -> Vec<(f64, f64, Parts)> {
     let (first, last) = (own[0].1, own[own.len() - 1].1);
     let one = |i: usize| match how {
         Bands::Sampled => {
@@ -101,7 +104,7 @@ fn made_of(own: &[(usize, f64)], count: usize, how: Bands) -> Vec<(f64, f64, Vec
         Bands::Averaged => {
             let width = (last - first) / count as f64;
             let (from, to) = (first + width * i as f64, first + width * (i + 1) as f64);
-            let mut parts: Vec<(usize, f64)> = Vec::new();
+            let mut parts = Parts::new();
             // The mean of a straight line over a piece is its value in the middle.
             for pair in own.windows(2) {
                 let (a, b) = (pair[0].1.max(from), pair[1].1.min(to));
@@ -145,7 +148,7 @@ impl<S: Source> Source for Reduced<S> {
         needed.sort_unstable();
         needed.dedup();
         let place = |channel: usize| needed.partition_point(|n| *n < channel);
-        let parts: Vec<Vec<(usize, f64)>> =
+        let parts: Vec<Parts> =
             channels.iter().map(|c| self.parts[*c].iter().map(|(n, w)| (place(*n), *w)).collect()).collect();
         let (block, whole) = (self.block, self.source.description());
         let (x, width) = (region.x * block, ((region.x + region.width) * block).min(whole.width) - region.x * block);
