@@ -1,5 +1,6 @@
 //! `trade`: what each speed knob costs in accuracy, measured on the user's own input; one file per kind of input.
 
+mod brdf;
 mod image;
 mod lamp;
 mod output;
@@ -16,6 +17,8 @@ use super::{Failure, Talk};
 pub(super) enum TradeCommand {
     /// Step, interpolation, rule, range and precision of the integration of a spectrum.
     Spectrum(spectrum::SpectrumArgs),
+    /// Bins, models and principal components of a material.
+    Brdf(Box<brdf::BrdfArgs>),
     /// Bands, pixels and precision of a spectral image.
     Image(Box<image::ImageArgs>),
     /// Angles, interpolation and precision of a lamp's table, and from where on the lamp is a point.
@@ -27,6 +30,7 @@ pub(super) enum TradeCommand {
 pub(super) fn run(command: TradeCommand, talk: Talk) -> Result<(), Failure> {
     match command {
         TradeCommand::Spectrum(a) => spectrum::trade(&a, talk),
+        TradeCommand::Brdf(a) => brdf::trade(&a, talk),
         TradeCommand::Image(a) => image::trade(&a, talk),
         TradeCommand::Lamp(a) => lamp::trade(&a, talk),
         TradeCommand::Render(a) => render::trade(&a, talk),

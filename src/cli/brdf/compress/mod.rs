@@ -110,7 +110,7 @@ impl Reconstructed {
 }
 
 /// Reads a basis; messages name the file.
-fn open_basis(path: &str) -> Result<(BasisFile, Checksum), Failure> {
+pub(in crate::cli) fn open_basis(path: &str) -> Result<(BasisFile, Checksum), Failure> {
     let wrong = |e: &dyn std::fmt::Display| Failure::Message(format!("{path}: {e}"));
     let read = if path == "-" {
         BasisFile::read(&mut io::stdin().lock())
