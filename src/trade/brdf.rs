@@ -240,6 +240,14 @@ fn ln_rms(pairs: &[(DVec3, DVec3)], reference: &[f64], found: &[f64]) -> f64 {
     (squares.sum::<f64>() / reference.len() as f64).sqrt()
 }
 
+/// The error of [`FIGURES`]' first that a quarter turn of the sample makes.
+pub(super) fn turned(material: &dyn Brdf) -> f64 {
+    let pairs = pairs(false);
+    let quarter = |d: DVec3| DVec3::new(-d.y, d.x, d.z);
+    let turned: Vec<(DVec3, DVec3)> = pairs.iter().map(|(i, o)| (quarter(*i), quarter(*o))).collect();
+    ln_rms(&pairs, &values(material, &pairs), &values(material, &turned))
+}
+
 /// Directional albedo at [`ALBEDO_DEG`], band by band, and the largest error of its quadrature.
 fn albedo(brdf: &dyn Brdf) -> (Vec<f64>, f64) {
     let one = |theta: f64| {

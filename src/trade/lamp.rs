@@ -175,6 +175,14 @@ pub fn sweep(luminaire: &Luminaire, height_m: f64, repeats: usize) -> Result<Lam
     Ok(LampSweep { sweep, choices })
 }
 
+/// The errors of [`FIGURES`] of another lamp against this one, both as `lamp grid` takes them.
+pub(super) fn difference(a: &Luminaire, b: &Luminaire, height_m: f64) -> Result<Vec<Option<f64>>, LampError> {
+    let settings = Settings::default();
+    let floor = beneath(a, height_m, CELLS, &Settings { near_ratio: 0.0, ..settings })?.plane;
+    let places = Places::new(a, height_m, floor)?;
+    Ok(places.values(a, &settings)?.errors(&places.values(b, &settings)?))
+}
+
 /// Everything that is tried, the whole table first.
 fn choices(luminaire: &Luminaire) -> Vec<Choice> {
     let d = &luminaire.distribution;

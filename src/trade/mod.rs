@@ -9,6 +9,7 @@ pub mod brdf;
 pub mod image;
 pub mod lamp;
 pub mod render;
+pub mod require;
 pub mod spectrum;
 pub mod timing;
 

@@ -213,3 +213,95 @@ fn lamps_and_settings_that_do_not_fit_are_told() {
         assert!(code == 2 && stderr.contains(expected), "{arguments:?}: {code} {stderr}");
     }
 }
+
+/// The answers of `require`, by question.
+fn required(arguments: &[&str]) -> (i32, Vec<Value>) {
+    let (code, document, stderr) = run(&[&["require", "--json"], arguments].concat());
+    assert!(code < 2, "{stderr}");
+    (code, json(&document)["results"].as_array().expect("results").clone())
+}
+
+fn question<'a>(result: &'a Value, name: &str) -> &'a Value {
+    let all = result["requirements"].as_array().expect("requirements");
+    all.iter().find(|r| r["question"] == name).unwrap_or_else(|| panic!("{name} in {result}"))
+}
+
+#[test]
+fn the_samples_that_a_spectrum_requires_are_those_that_convert_confirms() {
+    let file = office_led();
+    let file = file.to_str().expect("a plain path");
+    let (code, results) = required(&[file, "--error", "0.1%"]);
+    assert_eq!((code, results[0]["kind"].as_str()), (0, Some("spectrum")));
+    let samples = question(&results[0], "wavelengths");
+    let trade = ["trade", "spectrum", file, "--json", "--repeats", "1"];
+    let own = json(&run(&trade).1)["results"][0]["reference_errors"]["photopic"].as_f64().expect("a number");
+    let reference = illuminance(&["--rule", "exact"]);
+    for rung in ["needed", "simpler"] {
+        let model = samples[rung]["model"].as_str().expect("a model");
+        let step = model.split_whitespace().nth(1).expect("samples N nm apart");
+        // Both ways: with and without those between.
+        let errors = ["summation", "trapezoid", "exact"].into_iter().flat_map(|rule| {
+            let kinds = ["linear", "sprague", "cubic", "pchip"];
+            kinds.map(|kind| {
+                (illuminance(&["--rule", rule, "--resample", step, "--interpolation", kind]) / reference - 1.0).abs()
+            })
+        });
+        let best = errors.fold(f64::INFINITY, f64::min) + own;
+        let error = samples[rung]["error"].as_f64().expect("a number");
+        assert!((error - best).abs() < 1e-12, "{rung} {model}: {error}, {best}");
+        assert_eq!(error <= 1e-3, rung == "needed", "{rung} {model}: {error}");
+    }
+}
+
+#[test]
+fn lamps_and_materials_are_told_by_content_and_answered() {
+    let lambert = "lambert(reflectance=0.5)";
+    let (_, results) = required(&[&street(), lambert, "--error", "5%"]);
+    let kinds: Vec<&str> = results.iter().filter_map(|r| r["kind"].as_str()).collect();
+    assert_eq!(kinds, ["lamp", "material"]);
+    // The file's planes are those of one half, and its road is lit along it.
+    let symmetry = question(&results[0], "symmetry");
+    assert_eq!(symmetry["needed"]["model"], "planes of one half (about C0-C180)");
+    assert!(symmetry["simpler"]["error"].as_f64().is_some_and(|e| e > 0.05), "{symmetry}");
+    assert_eq!(question(&results[1], "azimuth")["needed"]["model"], "isotropic (three angles)");
+    let form = question(&results[1], "form");
+    assert!(form["needed"]["model"] == "the model lambert" && form["simpler"].is_null(), "{form}");
+    let brushed = "ward(ks=0.5, alpha_x=0.05, alpha_y=0.3)";
+    let (_, results) = required(&[brushed]);
+    let azimuth = question(&results[0], "azimuth");
+    assert_eq!(azimuth["needed"]["model"], "anisotropic (four angles)", "{azimuth}");
+    // What no model carries is an answer; what cannot be read is none, and the others are answered all the same.
+    let (code, table, stderr) = run(&["require", "LED-B3", "none.ies", "--error", "1e-12", "--csv"]);
+    assert!(code == 2 && stderr.contains("none.ies") && table.starts_with("path,question,figure,model,error,needed\n"));
+    assert!(table.lines().filter(|l| l.starts_with("LED-B3,")).count() > 4, "{table}");
+    let (code, text, stderr) = run(&["require", &street(), "--error", "1e-9"]);
+    assert!(code == 1 && stderr.contains("T003") && text.contains("none of those tried"), "{text} {stderr}");
+    let (code, _, stderr) = run(&["require", "-"]);
+    assert!(code == 2 && stderr.contains("expected --as KIND"), "{stderr}");
+}
+
+#[test]
+fn a_material_is_traded_and_its_settings_are_taken() {
+    let folder = Folder::new();
+    let (settings, table) = (inside(&folder, "form.toml"), inside(&folder, "small.binary"));
+    let gloss = "lambert(reflectance=0.2) + ggx(alpha=0.3, eta=1.5)";
+    let trade = ["trade", "brdf", gloss, "-w", "650,550,450", "--repeats", "1", "--json", "--settings", &settings];
+    let (code, document, stderr) = run(&[&trade[..], &["--error", "0.2"]].concat());
+    assert_eq!(code, 0, "{stderr}");
+    let result = json(&document)["results"][0].clone();
+    assert!(result["recommended"]["error_bound"].as_f64().is_some_and(|e| e <= 0.2), "{}", result["recommended"]);
+    let written = std::fs::read_to_string(&settings).expect("written");
+    assert!(written.contains("resolution = \"") != written.contains("model = \""), "{written}");
+    std::fs::write(&settings, "[brdf]\nresolution = \"16x16x8\"\n").expect("written");
+    let (code, _, stderr) = run(&["brdf", "convert", gloss, "-o", &table, "--settings", &settings]);
+    assert_eq!(code, 0, "{stderr}");
+    // MERL: three counts of 4 bytes, then 8 for each value.
+    assert_eq!(std::fs::metadata(&table).expect("written").len(), 12 + 8 * 3 * 16 * 16 * 8);
+    std::fs::write(&settings, "[brdf]\nmodel = \"lambert\"\n").expect("written");
+    let (code, fits, stderr) = run(&["brdf", "fit", &table, "--settings", &settings, "--csv"]);
+    assert!(code == 0 && fits.contains("lambert"), "{fits} {stderr}");
+    let (code, _, stderr) = run(&["brdf", "convert", gloss, "-o", &table, "--settings", &settings]);
+    assert!(code == 2 && stderr.contains("form.toml:1:1: found no `resolution`"), "{stderr}");
+    let (code, _, stderr) = run(&["trade", "brdf", "mirror(reflectance=0.9)"]);
+    assert!(code == 2 && stderr.contains("nothing but a Dirac lobe"), "{stderr}");
+}

@@ -10,6 +10,8 @@ mod target;
 
 use clap::Subcommand;
 
+pub(super) use self::target::Target;
+
 use super::{Failure, Talk};
 
 /// Kinds of input.

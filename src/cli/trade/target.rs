@@ -7,7 +7,7 @@ use crate::trade::{Figure, Measure, Sweep};
 
 /// An error as it is written: `0.5%`, `0.005`, `20K`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Target {
+pub(in crate::cli) struct Target {
     value: f64,
     /// What stands behind the number.
     unit: String,
@@ -28,7 +28,7 @@ impl FromStr for Target {
 
 impl Target {
     /// The error in the figure's unit; relative ones as a fraction.
-    pub(super) fn of(&self, figure: &Figure) -> Result<f64, Failure> {
+    pub(in crate::cli) fn of(&self, figure: &Figure) -> Result<f64, Failure> {
         match (figure.measure, self.unit.as_str()) {
             (Measure::Relative, "%") => Ok(self.value / 100.0),
             (_, "") => Ok(self.value),
