@@ -19,6 +19,7 @@ mod notes;
 mod output;
 mod places;
 mod render;
+mod require;
 mod selfcheck;
 mod tables;
 mod trade;
@@ -71,6 +72,9 @@ enum Command {
     /// What speed costs in accuracy, measured on an input: settings timed and compared, and the fastest that meets an error.
     #[command(subcommand)]
     Trade(trade::TradeCommand),
+    /// The simplest model that carries a scene, a lamp, a spectrum, a material or a spectral image within an error, and the error of a
+    /// simpler one; exit code 1 where none does.
+    Require(Box<require::RequireArgs>),
     /// Extremes and reference cases, run on this machine: from 1 K to 10⁹ K, from 1e-300 to 1e300 W, grazing angles, tiny and huge scenes;
     /// exit code 1 where one is off.
     Selfcheck(selfcheck::SelfcheckArgs),
@@ -140,6 +144,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(arguments) => render::run(&arguments, cli.talk),
         Command::Merge(arguments) => render::merge(&arguments, cli.talk),
         Command::Trade(command) => trade::run(command, cli.talk),
+        Command::Require(arguments) => require::run(&arguments, cli.talk),
         Command::Selfcheck(arguments) => selfcheck::run(&arguments, cli.talk),
         Command::Detector(arguments) => detector::run(&arguments, cli.talk),
         Command::Correct(arguments) => correct::run(&arguments, cli.talk),

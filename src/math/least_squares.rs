@@ -197,6 +197,10 @@ pub const SINGULAR: f64 = 1e-10;
 #[must_use]
 pub fn invert(normal: &DMatrix<f64>, free: &[usize]) -> Inverse {
     const FLOOR: f64 = 1e-14;
+    if free.is_empty() {
+        // All rest on their bounds: there is nothing to tell apart.
+        return Inverse { matrix: DMatrix::zeros(0, 0), condition: 1.0, loose: Vec::new() };
+    }
     let unit: Vec<f64> = free.iter().map(|&i| normal[(i, i)].max(f64::MIN_POSITIVE).sqrt()).collect();
     let scaled = DMatrix::from_fn(free.len(), free.len(), |r, c| normal[(free[r], free[c])] / (unit[r] * unit[c]));
     let eigen = SymmetricEigen::new(scaled);
@@ -249,6 +253,12 @@ mod tests {
         // A corner: nothing can move.
         let found = minimise(&bowl, &[0.5, 0.5], &[0.0; 2], &[1.0, 1.0], &LIMITS).expect("a value");
         assert!(found.converged && found.x == [1.0, 1.0], "{found:?}");
+    }
+
+    #[test]
+    fn where_nothing_can_move_there_is_nothing_to_invert() {
+        let inverse = invert(&DMatrix::from_row_slice(1, 1, &[4.0]), &[]);
+        assert!(inverse.matrix.is_empty() && inverse.condition == 1.0 && inverse.loose.is_empty(), "{inverse:?}");
     }
 
     #[test]

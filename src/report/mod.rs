@@ -24,6 +24,7 @@ pub mod image;
 pub mod lamp;
 pub mod render;
 pub mod render_audit;
+pub mod require;
 pub mod selfcheck;
 pub mod text;
 pub mod trade;

@@ -5,7 +5,11 @@
 //! estimate (from seeds), it has an interval; where it is computed, the interval has no width. The reference is not perfect either:
 //! its own error ([`Sweep::reference_errors`]) is added wherever an error must be guaranteed, and differences below it are noise.
 
+pub mod brdf;
+pub mod image;
+pub mod lamp;
 pub mod render;
+pub mod require;
 pub mod spectrum;
 pub mod timing;
 

@@ -56,7 +56,7 @@ pub struct RenderSweep {
 }
 
 /// A scene under one choice of settings.
-struct Choice {
+pub(super) struct Choice {
     render: Render,
     built: Built,
     meters: Vec<(u64, Meter)>,
@@ -65,7 +65,7 @@ struct Choice {
 }
 
 impl Choice {
-    fn new(text: &str, description: &Description, files: &dyn Files, render: Render) -> Result<Self, Error> {
+    pub(super) fn new(text: &str, description: &Description, files: &dyn Files, render: Render) -> Result<Self, Error> {
         let mut description = description.clone();
         description.render = render.clone();
         let built = build(text, &description, files)?;
@@ -82,8 +82,18 @@ impl Choice {
         Ok(Self { render, built, meters, read })
     }
 
+    /// What was built.
+    pub(super) fn built(&self) -> &Built {
+        &self.built
+    }
+
+    /// Whether there is nothing to read.
+    pub(super) fn is_blind(&self) -> bool {
+        self.read.is_empty()
+    }
+
     /// Value and standard error of every meter and grid.
-    fn run(&self, seed: u64) -> Vec<(f64, f64)> {
+    pub(super) fn run(&self, seed: u64) -> Vec<(f64, f64)> {
         let settings = Settings { seed, ..self.built.settings.clone() };
         let mut board = Board::new(&self.built.scene, &settings, Share::WHOLE, self.meters.clone());
         board.sample_until(self.render.meter_samples.div_ceil(REPLICATES as u64));
@@ -122,7 +132,7 @@ pub fn sweep(
     let make = |render: Render| Choice::new(text, description, files, render);
     let samples = MORE * own.meter_samples;
     let best = make(Render { model: Model::Full, meter_samples: samples, ..own.clone() })?;
-    if best.read.is_empty() {
+    if best.is_blind() {
         return Err(RenderError::NoMeter);
     }
     let reference = best.run(own.seed.wrapping_sub(SEEDS));

@@ -220,3 +220,49 @@ fn pictures_in_colours_go_in_and_out() {
         assert!(!folder.path().join(args[2]).exists(), "{args:?}");
     }
 }
+
+#[test]
+fn a_trade_says_what_fewer_pixels_and_bands_cost_and_convert_makes_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    cube(folder.path());
+    let run = |arguments: &[&str]| photopic().current_dir(&folder).args(arguments).assert();
+    let trade = ["trade", "image", "cube.hdr", "--repeats", "1", "--error", "50%", "--settings", "s.toml", "--json"];
+    let out = run(&trade).success().get_output().stdout.clone();
+    let result = serde_json::from_slice::<Value>(&out).expect("JSON")["results"][0].clone();
+    let trials = result["trials"].as_array().expect("trials").clone();
+    let is = |t: &&Value| {
+        t["settings"]["block"] == "2" && t["settings"]["bands"] == "own" && t["settings"]["precision"] == "f32"
+    };
+    let error =
+        trials.iter().find(is).expect("it was tried")["errors"]["luminance"]["error"].as_f64().expect("a number");
+    // 1 2 3 over 4 5 6: the means 3 of 1, 2, 4, 5 and 4.5 of 3 and 6, against a mean of 3.5.
+    let expected = (14.5_f64 / 6.0).sqrt() / 3.5;
+    assert!((error - expected).abs() < 1e-6, "{error}, expected {expected}");
+    assert!(fs::read_to_string(folder.path().join("s.toml")).expect("written").contains("[image]\nblock = "));
+    fs::write(folder.path().join("two.toml"), "[image]\nblock = 2\nhalf = true\n").expect("written");
+    for option in [["--block", "2"], ["--settings", "two.toml"]] {
+        run(&[&["image", "convert", "cube.hdr", "-o", "y.exr"][..], &option].concat()).success();
+        let y = info(folder.path(), "y.exr")["results"][0].clone();
+        for (key, want) in [("min", 3.0), ("max", 4.5)] {
+            let got = y["channels"][0][key].as_f64().expect("a number");
+            // Half precision has 11 bits.
+            assert!((got / (want * 683.002 * 5.0) - 1.0).abs() < 5e-4, "{option:?} {key} {got}");
+        }
+    }
+    // Light at 555 nm alone is half as much in the mean over 550–555 nm.
+    let few = ["image", "convert", "cube.hdr", "-o", "few.npy", "--to", "cube", "--bands", "2", "--filter", "averaged"];
+    run(&few).success();
+    assert_eq!(info(folder.path(), "few.npy")["results"][0]["channels"][0]["max"], 3.0);
+    let refused = [
+        (
+            vec!["image", "convert", "cube.hdr", "-o", "x.exr", "--bands", "9"],
+            "found 9 bands asked for of an image of 3",
+        ),
+        (vec!["image", "convert", "cube.hdr", "-o", "x.exr", "--block", "0"], "expected 1 or more"),
+        (vec!["trade", "image", "y.exr"], "the image has 0 bands; expected a spectral image of 3 or more"),
+        (vec!["trade", "image", "few.npy", "--wavelengths", "500:10"], "the image has 2 bands"),
+    ];
+    for (arguments, expected) in refused {
+        run(&arguments).code(2).stderr(predicates::str::contains(expected));
+    }
+}

@@ -120,3 +120,49 @@ fn scenes_and_files_that_do_not_fit_are_told() {
     command.args(["trade", "render"]).arg(&path);
     command.assert().code(2).stderr(contains("the scene has no meter; expected a sensor that reads a number"));
 }
+
+#[test]
+fn what_a_scene_requires_is_confirmed_by_rendering_both_ways() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(&folder, HOLLOW);
+    let document = json(photopic().args(["require", "--json", "--error", "1%", "--meter-samples", "4096"]).arg(&path));
+    let result = &document["results"][0];
+    assert_eq!(result["kind"], "scene");
+    let of = |name: &str| {
+        let all = result["requirements"].as_array().expect("requirements");
+        all.iter().find(|r| r["question"] == name).unwrap_or_else(|| panic!("{name} in {result}")).clone()
+    };
+    let paths = of("paths");
+    assert_eq!(paths["needed"]["model"], "paths of any length", "{paths}");
+    assert_eq!(paths["simpler"]["model"], "paths of up to 6 edges", "{paths}");
+    let simpler = number(&paths["simpler"]["error"]);
+    // The same by `render`, with seeds of its own: beyond the error, and as far off as was said.
+    let cut = folder.path().join("cut.toml");
+    std::fs::write(&cut, "[render]\nmax_edges = 6\n").expect("written");
+    let readings = |options: &[&std::ffi::OsStr]| {
+        let mut render = photopic();
+        render.arg("render").arg(&path).args(["--json", "--seed", "77", "--meter-samples", "32768", "--packets", "0"]);
+        let document = json(render.args(options));
+        let of = |s: &Value| (number(&s["value"]), number(&s["standard_error"]));
+        document["results"][0]["sensors"].as_array().expect("sensors").iter().map(of).collect::<Vec<_>>()
+    };
+    let (all, six) = (readings(&[]), readings(&["--settings".as_ref(), cut.as_os_str()]));
+    let off = all.iter().zip(&six).map(|((a, _), (b, _))| (b / a - 1.0).abs());
+    let noise = all.iter().chain(&six).map(|(v, s)| s / v).fold(0.0, f64::max);
+    let off = off.fold(0.0, f64::max);
+    assert!(off > 0.01 && off < simpler + 3.0 * noise, "{off} ± {noise}, {simpler}");
+    // Wavelengths: the renderer's own choice at that error, and one rung lower is beyond it.
+    let wavelengths = of("wavelengths");
+    assert!(number(&wavelengths["needed"]["error"]) <= 0.01, "{wavelengths}");
+    assert!(wavelengths["simpler"].is_null() || number(&wavelengths["simpler"]["error"]) > 0.01, "{wavelengths}");
+    assert_eq!(of("polarisation")["needed"]["model"], "unpolarised light");
+    assert_eq!(of("azimuth")["needed"]["model"], "isotropic scattering");
+    // Where nothing scatters, direct light is all there is.
+    let bare = HOLLOW.replace("reflectance = 0.6", "reflectance = 0");
+    let path = scene(&folder, &bare);
+    let document = json(photopic().args(["require", "--json", "--error", "1%", "--meter-samples", "4096"]).arg(&path));
+    let all = document["results"][0]["requirements"].as_array().expect("requirements").clone();
+    let paths = all.iter().find(|r| r["question"] == "paths").expect("paths");
+    assert_eq!(paths["needed"]["model"], "direct light", "{paths}");
+    assert!(paths["because"].as_str().is_some_and(|b| b.contains("nothing scatters")), "{paths}");
+}

@@ -18,7 +18,7 @@ use crate::report::brdf as report;
 use crate::report::envelope::Envelope;
 
 /// Wavelengths of an audit where none are given, nm: within the tables of the metals.
-const WAVELENGTHS_NM: [f64; 7] = [400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0];
+pub(in crate::cli) const WAVELENGTHS_NM: [f64; 7] = [400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0];
 
 /// Materials, limits and the form of the answer.
 #[derive(Debug, Args)]

@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::load::{BandArgs, Loaded, Subject, load, on_bands, prepare};
 use super::numbers::{Bins, Numbers, check_theta_above};
+use super::settings;
 use crate::brdf::Brdf;
 use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::{Net, bins, nodes, sampled};
@@ -77,6 +78,9 @@ pub(in crate::cli) struct ConvertArgs {
     /// Bins of a MERL file in θh, θd and φd; other programs expect 90x90x180.
     #[arg(long, value_name = "HxDxP")]
     resolution: Option<Bins>,
+    /// A file with the bins, as `trade brdf --settings` writes it; --resolution goes before it.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
     /// Angles of incidence of the points, degrees. A table is written at its own places unless one of these four is given; a
     /// model at 0:85:5.
     #[arg(long, value_name = "DEG")]
@@ -194,8 +198,11 @@ struct Material<'a> {
     table: Option<&'a Table>,
 }
 
-pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure> {
-    let paths = &arguments.materials;
+pub(super) fn convert(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure> {
+    if let (None, Some(file)) = (arguments.resolution, &arguments.settings) {
+        arguments.resolution = Some(settings::bins(file)?);
+    }
+    let (arguments, paths) = (&arguments, &arguments.materials);
     let target = arguments.to.or_else(|| Target::of_name(&arguments.output)).ok_or_else(|| {
         let output = arguments.output.display();
         Failure::Message(format!("{output}: expected a name ending in .binary, .alta or .csv, or --to FORMAT"))

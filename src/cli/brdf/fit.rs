@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use super::load::load_table;
 use super::numbers::{Numbers, check_lobes};
 use super::plot::format_of;
+use super::settings;
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Samples, Scope, Selection};
 use crate::brdf::table::Table;
@@ -53,8 +54,11 @@ pub(in crate::cli) struct FitArgs {
     ///
     /// `?` is open, `?0.2` open from 0.2 on; a model without parentheses has all of its numbers open, inside parentheses what has a
     /// default keeps it. `lambert + ggx`, `lambert(reflectance=?) + ?*ward(ks=1, alpha=?)`, `ggx(eta=?1.5)`.
-    #[arg(short, long = "model", required = true, value_name = "MODEL")]
+    #[arg(short, long = "model", required_unless_present = "settings", value_name = "MODEL")]
     models: Vec<Template>,
+    /// A file with a model more, as `trade brdf --settings` writes it.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
     /// What is minimised; all measures are reported.
     #[arg(long, value_enum, default_value = "cosine")]
     metric: Metric,
@@ -150,7 +154,11 @@ impl FitArgs {
     }
 }
 
-pub(super) fn fit(arguments: &FitArgs, talk: Talk) -> Result<(), Failure> {
+pub(super) fn fit(mut arguments: FitArgs, talk: Talk) -> Result<(), Failure> {
+    if let Some(file) = &arguments.settings {
+        arguments.models.push(settings::model(file)?);
+    }
+    let arguments = &arguments;
     arguments.check()?;
     let picture = arguments.plot.as_deref().map(|p| format_of("--plot", p)).transpose()?;
     let (options, selection) = (arguments.options(), arguments.selection());

@@ -38,7 +38,7 @@ pub(super) struct MaterialArgs {
 
 /// The bands of a material, and the format of its file.
 #[derive(Debug, Default, Args)]
-pub(super) struct BandArgs {
+pub(in crate::cli) struct BandArgs {
     /// Wavelengths in nm: a list `450,550`, a range `400:700:50`, or both. A table of wavelengths is read linearly between its
     /// own; materials given per channel keep their channels.
     #[arg(short, long, value_name = "NM")]
@@ -60,7 +60,7 @@ fn formats() -> impl TypedValueParser<Value = Format> {
 
 /// What an argument stands for.
 #[derive(Debug, Clone)]
-pub(super) enum Subject {
+pub(in crate::cli) enum Subject {
     /// A material in words.
     Described(Material),
     /// A measured table.
@@ -68,7 +68,7 @@ pub(super) enum Subject {
 }
 
 /// A material read.
-pub(super) struct Loaded {
+pub(in crate::cli) struct Loaded {
     /// What to call it: the file and the name in it, or the description.
     pub name: String,
     pub input: Input,
@@ -80,7 +80,7 @@ pub(super) struct Loaded {
 
 /// Reads a material: a measured table, a description in a file, or the description itself. The spectra that a description
 /// names are beside its file.
-pub(super) fn load(argument: &str, format: Option<Format>) -> Loaded {
+pub(in crate::cli) fn load(argument: &str, format: Option<Format>) -> Loaded {
     let mut loaded = read(argument, format);
     if let Ok(Checked { value: Subject::Described(material), .. }) = &mut loaded.subject {
         let folder = Path::new(argument).parent().filter(|_| !argument.contains('(')).unwrap_or(Path::new(""));
@@ -248,13 +248,18 @@ pub(super) fn in_file(path: &str, error: &Error) -> String {
 }
 
 /// A material on its bands.
-pub(super) struct Ready {
+pub(in crate::cli) struct Ready {
     pub bands: Vec<Channel>,
     pub brdf: Box<dyn Brdf>,
 }
 
 /// A material on its channels, or on the wavelengths; a table on its own bands where none are asked for.
-pub(super) fn prepare(path: &str, subject: &Subject, wanted: &BandArgs, default_nm: &[f64]) -> Result<Ready, String> {
+pub(in crate::cli) fn prepare(
+    path: &str,
+    subject: &Subject,
+    wanted: &BandArgs,
+    default_nm: &[f64],
+) -> Result<Ready, String> {
     match subject {
         Subject::Described(material) => {
             if wanted.channels.is_some() {

@@ -8,10 +8,13 @@ mod fit;
 mod load;
 mod numbers;
 mod plot;
+mod settings;
 
 use clap::Subcommand;
 
+pub(super) use check::WAVELENGTHS_NM;
 pub(super) use compress::open_basis;
+pub(super) use load::{BandArgs, Loaded, Ready, load, prepare};
 pub(super) use numbers::Bins;
 
 use super::{Failure, Talk};
@@ -41,8 +44,8 @@ pub(super) fn run(command: BrdfCommand, talk: Talk) -> Result<(), Failure> {
         BrdfCommand::Info(a) => check::info(&a, talk),
         BrdfCommand::Check(a) => check::check(&a, talk),
         BrdfCommand::Eval(a) => eval::eval(&a, talk),
-        BrdfCommand::Convert(a) => convert::convert(&a, talk),
-        BrdfCommand::Fit(a) => fit::fit(&a, talk),
+        BrdfCommand::Convert(a) => convert::convert(a, talk),
+        BrdfCommand::Fit(a) => fit::fit(a, talk),
         BrdfCommand::Plot(a) => plot::plot(&a, talk),
         BrdfCommand::Compress(command) => compress::run(command, talk),
     }

@@ -38,7 +38,7 @@ fn within(option: &str, value: f64, sound: bool, expected: &str) -> Result<(), F
 
 /// A list of numbers: `0,30,60` or `0:80:10`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Numbers(pub Vec<f64>);
+pub(in crate::cli) struct Numbers(pub Vec<f64>);
 
 /// Most numbers that a range may have.
 const MOST: f64 = 100_000.0;

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 
 use super::open::{Reading, Watched, open};
 use super::save::{Format, Options, format_of, save};
+use super::settings::ReductionArgs;
 use crate::cli::convert::{RuleArg, positive, range_nm};
 use crate::cli::notes::Notes;
 use crate::cli::{Failure, Talk};
@@ -34,6 +35,7 @@ Examples:
   photopic image convert render.exr -o xyz.exr --to xyz --observer cie-1964-10deg
   photopic image convert leaf.hdr -o leaf.exr --to srgb --illuminant D65
   photopic image convert cube.hdr -o cube.exr --to cube       (another format, with RGB beside the spectra)
+  photopic image convert cube.hdr -o small.exr --to cube --bands 16 --block 2
   photopic image convert scene.hdr -o xyz.exr --to xyz        (a Radiance picture: 179 cd/m2 per unit)
   photopic image convert photo.png -o y.exr --white-luminance 250
   photopic image convert render.exr -o render.pic             (Radiance RGB, absolute)
@@ -59,6 +61,8 @@ pub(in crate::cli) struct ConvertArgs {
     reading: Reading,
     #[command(flatten)]
     meaning: MeaningArgs,
+    #[command(flatten)]
+    reduction: ReductionArgs,
     #[command(flatten)]
     tone: ToneArgs,
     #[command(flatten)]
@@ -93,7 +97,7 @@ enum ToneArg {
 /// What the samples are, and how they are weighted.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Photometry and colour")]
-pub(super) struct MeaningArgs {
+pub(in crate::cli) struct MeaningArgs {
     /// What the samples are of, where the file does not say: radiance, irradiance, exitance, …, relative.
     #[arg(long, value_name = "QUANTITY")]
     quantity: Option<Quantity>,
@@ -243,7 +247,7 @@ fn spectrum(path: &str) -> Result<Spectrum, Failure> {
 
 impl MeaningArgs {
     /// The settings of a plan.
-    pub(super) fn settings(&self) -> Result<Settings, Failure> {
+    pub(in crate::cli) fn settings(&self) -> Result<Settings, Failure> {
         let m = self;
         let light = |name: &String| {
             let spectrum = if named::is_name(name) {
@@ -288,9 +292,10 @@ impl ConvertArgs {
 
 pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure> {
     let notes = Notes::new(&arguments.images, talk);
+    let reduction = arguments.reduction.read()?;
     let options = Options {
         format: format_of(&arguments.output, arguments.writing.format)?,
-        depth: if arguments.writing.half { Depth::Half } else { Depth::Float },
+        depth: if arguments.writing.half || reduction.half { Depth::Half } else { Depth::Float },
         interleave: match arguments.writing.interleave {
             InterleaveArg::Bsq => Interleave::Bsq,
             InterleaveArg::Bil => Interleave::Bil,
@@ -304,7 +309,8 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
     notes.print(&opened.findings);
     let path = opened.path;
     let refused = |error: PlanError| Failure::Message(format!("{path}: {error}"));
-    let source = Watched { source: opened.source, progress: notes.progress.clone() };
+    let watched = Watched { source: opened.source, progress: notes.progress.clone() };
+    let source = reduction.of(Box::new(watched), &path)?;
     let mut source: Box<dyn Source> = match target {
         Some(target) => {
             if tone.is_some_and(|tone| tone.key.is_none()) {
@@ -331,7 +337,8 @@ pub(super) fn convert(arguments: &ConvertArgs, talk: Talk) -> Result<(), Failure
         }
         None => cube(source, arguments, &settings, options.format).map_err(refused)?,
     };
-    let findings = save(&arguments.output, &opened.files, &mut source, options)?;
+    let read: Vec<String> = opened.files.into_iter().chain(arguments.reduction.file()).collect();
+    let findings = save(&arguments.output, &read, &mut source, options)?;
     notes.progress.finish_and_clear();
     notes.print(&findings);
     Ok(())
@@ -375,7 +382,7 @@ fn without_curve(target: &Target) -> Option<Target> {
 
 /// Every channel as it is; in an EXR with linear sRGB beside the spectra, so that any viewer shows something.
 fn cube(
-    source: Watched,
+    source: Box<dyn Source>,
     arguments: &ConvertArgs,
     settings: &Settings,
     format: Format,
@@ -392,7 +399,7 @@ fn cube(
     match Plan::new(description, &target, &settings) {
         Ok(plan) if wanted => Ok(Box::new(Beside::new(source, plan.value))),
         // Bands beyond the visible have no colour to show.
-        Ok(_) | Err(PlanError::Outside { .. } | PlanError::NoBands { .. }) => Ok(Box::new(source)),
+        Ok(_) | Err(PlanError::Outside { .. } | PlanError::NoBands { .. }) => Ok(source),
         Err(error) => Err(error),
     }
 }

@@ -9,7 +9,10 @@ mod open;
 mod probe;
 mod save;
 mod seen;
+mod settings;
 
+pub(super) use self::convert::MeaningArgs;
+pub(super) use self::open::{Reading, open};
 use clap::Subcommand;
 
 use super::{Failure, Talk};

@@ -25,7 +25,7 @@ const PICTURES: [&str; 4] = ["png", "tif", "tiff", "exr"];
 /// How the input is read.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Reading")]
-pub(super) struct Reading {
+pub(in crate::cli) struct Reading {
     /// Wavelengths (nm) of an NPY array or a stack: START:STEP, or a CSV file with a column wavelength_nm and, for a stack, file,
     /// gain and dark where wanted.
     #[arg(long, value_name = "START:STEP|FILE")]
@@ -48,7 +48,7 @@ pub(super) struct Reading {
 }
 
 /// An image ready to be read.
-pub(super) struct Opened {
+pub(in crate::cli) struct Opened {
     /// Its pixels.
     pub source: Box<dyn Source>,
     /// What was noticed on opening.
@@ -68,7 +68,7 @@ impl Opened {
     }
 
     /// The files with their checksums.
-    pub(super) fn inputs(&self) -> Result<Vec<Input>, Failure> {
+    pub(in crate::cli) fn inputs(&self) -> Result<Vec<Input>, Failure> {
         let one = |path: &String| {
             let mut digest = Sha256::new();
             let mut file = File::open(path).map_err(|e| cannot(path, &e))?;
@@ -149,7 +149,7 @@ fn refused(path: &str) -> impl Fn(Error) -> Failure {
 }
 
 /// Opens the image that one path, or the pictures of several, make.
-pub(super) fn open(paths: &[String], reading: &Reading) -> Result<Opened, Failure> {
+pub(in crate::cli) fn open(paths: &[String], reading: &Reading) -> Result<Opened, Failure> {
     match paths {
         [path] if Path::new(path).is_dir() => {
             let pictures = folder(path)?;

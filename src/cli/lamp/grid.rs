@@ -10,7 +10,9 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use serde_json::json;
 
+use super::interpolation::{InterpolationArgs, interpolate};
 use super::load::load;
+use super::settings;
 use crate::cli::notes::Notes;
 use crate::cli::output::{self, Sink};
 use crate::cli::{Failure, Talk};
@@ -99,12 +101,17 @@ pub(in crate::cli) struct GridArgs {
     /// The receivers: flat, upright cylinders, or upright half cylinders (with --facing).
     #[arg(long, value_enum, default_value_t = ReceiverKind::Planar)]
     receiver: ReceiverKind,
-    /// Subdivide luminaires nearer than so many times their largest dimension; 0 takes all as points.
-    #[arg(long, value_name = "TIMES", default_value_t = 5.0)]
-    near: f64,
+    /// Subdivide luminaires nearer than so many times their largest dimension; 0 takes all as points. Without it 5.
+    #[arg(long, value_name = "TIMES")]
+    near: Option<f64>,
     /// Relative tolerance of the subdivision.
     #[arg(long, value_name = "SHARE", default_value_t = 1e-4)]
     tolerance: f64,
+    #[command(flatten)]
+    interpolation: InterpolationArgs,
+    /// A file with settings, as `trade lamp --settings` writes it; options given here go before it.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
     /// One row per point.
     #[arg(long, conflicts_with = "json")]
     csv: bool,
@@ -179,9 +186,12 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
     let a = arguments;
     let (plot, picture) = (target(a.plot.as_deref(), "--plot")?, target(a.picture.as_deref(), "--picture")?);
     let laid = a.layout.as_deref().map(layout::read).transpose()?;
+    let given = settings::Settings::read(a.settings.as_deref())?;
+    let near = a.near.or(given.near_ratio).unwrap_or(Settings::default().near_ratio);
+    let interpolation = a.interpolation.or(given.interpolation);
     let files = laid.as_ref().map_or(&a.files, |l| &l.files);
     let mut read: Vec<String> = files.clone();
-    read.extend(a.layout.iter().map(|l| l.display().to_string()));
+    read.extend(a.layout.iter().chain(&a.settings).map(|l| l.display().to_string()));
     let mut sink = Sink::open(a.output.as_deref(), &read)?;
     let notes = Notes::new(files, talk);
     let mut inputs = Vec::new();
@@ -190,8 +200,10 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
     for path in files {
         let loaded = load(path, a.repair);
         inputs.push(loaded.input);
-        let file = loaded.file.map_err(|(message, _)| Failure::Message(message))?;
+        let mut file = loaded.file.map_err(|(message, _)| Failure::Message(message))?;
         findings.extend(file.findings);
+        interpolate(&mut file.value, interpolation);
+        given.thin(&mut file.value.luminaire)?;
         lamps.push(file.value.luminaire);
         if !lamps.last().is_some_and(has_opening) {
             let message = "the luminous opening is not known: the luminaire is taken as a point at any distance";
@@ -213,7 +225,7 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
             None => return Err(Failure::Message("--receiver semicylindrical: expected --facing X,Y,0".into())),
         },
     };
-    let settings = Settings { maintenance_factor: a.maintenance, near_ratio: a.near, tolerance: a.tolerance };
+    let settings = Settings { maintenance_factor: a.maintenance, near_ratio: near, tolerance: a.tolerance };
     let result = illuminance(&placed, &plane, &receiver, &settings).map_err(message)?;
     if result.undefined > 0 {
         let text = format!("{} points lie in a luminaire or on it and have no value", result.undefined);
@@ -253,8 +265,7 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
                 json!({"position_m": p.position_m().to_array(), "axis": p.axis().to_array(), "c0": p.c0().to_array(), "dimming": p.dimming()})
             })
             .collect();
-        let settings =
-            json!({"near_ratio": a.near, "tolerance": a.tolerance, "repair": a.repair, "luminaires": luminaires});
+        let settings = json!({"near_ratio": near, "tolerance": a.tolerance, "interpolation": interpolation.name(), "repair": a.repair, "luminaires": luminaires});
         let mut envelope = Envelope::begin(Vec::new(), "lamp grid", &settings)?;
         inputs.into_iter().for_each(|i| envelope.input(i));
         envelope.result(&report::grid(&result, a.maintenance).into())?;

@@ -1,6 +1,7 @@
 //! How the tables of lamp files are interpolated.
 
 use clap::{Args, ValueEnum};
+use serde::Deserialize;
 
 use crate::luminaire::Interpolation;
 use crate::luminaire::format::File;
@@ -9,13 +10,14 @@ use crate::luminaire::format::File;
 #[derive(Debug, Args)]
 pub(super) struct InterpolationArgs {
     /// The intensity between the entries of the table.
-    #[arg(long, value_name = "KIND", default_value = "bilinear")]
-    interpolation: Choice,
+    #[arg(long, value_name = "KIND")]
+    interpolation: Option<Choice>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Choice {
-    /// Linear in both angles, as the trade's tools have it.
+#[derive(Debug, Clone, Copy, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Choice {
+    /// Linear in both angles, as the trade's tools have it; what is done without a choice.
     Bilinear,
     /// Smooth, exact at the entries, never beyond its neighbours (PCHIP).
     MonotoneCubic,
@@ -23,9 +25,14 @@ enum Choice {
 
 impl InterpolationArgs {
     pub(super) fn value(&self) -> Interpolation {
-        match self.interpolation {
-            Choice::Bilinear => Interpolation::Bilinear,
-            Choice::MonotoneCubic => Interpolation::MonotoneCubic,
+        self.or(None)
+    }
+
+    /// What the command line says, else what a file of settings says.
+    pub(super) fn or(&self, settings: Option<Choice>) -> Interpolation {
+        match self.interpolation.or(settings) {
+            None | Some(Choice::Bilinear) => Interpolation::Bilinear,
+            Some(Choice::MonotoneCubic) => Interpolation::MonotoneCubic,
         }
     }
 }

@@ -10,12 +10,12 @@ use crate::luminaire::format::{self, File, ReadOptions};
 use crate::report::envelope::Input;
 
 /// A file read, with its checksum.
-pub(super) struct Loaded {
+pub(in crate::cli) struct Loaded {
     pub input: Input,
     pub file: Result<Checked<File>, (String, Box<Finding>)>,
 }
 
-pub(super) fn load(path: &str, repair: bool) -> Loaded {
+pub(in crate::cli) fn load(path: &str, repair: bool) -> Loaded {
     let bytes = if path == "-" {
         let mut bytes = Vec::new();
         io::stdin().read_to_end(&mut bytes).map(|_| bytes)

@@ -7,6 +7,7 @@ mod grid;
 mod interpolation;
 mod load;
 mod plot;
+mod settings;
 mod spectral;
 mod transform_args;
 
@@ -15,6 +16,7 @@ use serde_json::Map;
 
 use self::files::{FilesArgs, Verb, files};
 use self::interpolation::InterpolationArgs;
+pub(super) use self::load::load;
 use super::{Failure, Talk};
 use crate::luminaire::Interpolation;
 use crate::report::lamp as report;

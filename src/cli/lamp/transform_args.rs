@@ -1,9 +1,12 @@
 //! What `lamp convert` does to a luminaire on the way.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 
 use super::interpolation::{InterpolationArgs, interpolate};
 use super::load::load;
+use super::settings::Settings;
 use crate::cli::Failure;
 use crate::finding::{Checked, Finding};
 use crate::luminaire::format::File;
@@ -48,6 +51,9 @@ pub(super) struct TransformArgs {
     scale_to: Option<(f64, Amount)>,
     #[command(flatten)]
     interpolation: InterpolationArgs,
+    /// A file with the angles to keep and the interpolation, as `trade lamp --settings` writes it; the angles are left out first.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
 }
 
 /// Symmetries to be had.
@@ -135,17 +141,19 @@ fn amount(text: &str) -> Result<(f64, Amount), String> {
 impl TransformArgs {
     /// Other files that are read: they must not be overwritten.
     pub(super) fn inputs(&self) -> impl Iterator<Item = &str> {
-        self.merge.iter().map(|other| other.path.as_str())
+        self.merge.iter().map(|other| other.path.as_str()).chain(self.settings.iter().filter_map(|p| p.to_str()))
     }
 
     /// The luminaire of a file with all that was asked for done to it. Tables are written as they are; a reader takes them as
     /// bilinear, and so does the result.
     pub(super) fn apply(&self, mut file: File, repair: bool) -> Result<Checked<Luminaire>, Failure> {
         let message = |error: &dyn std::fmt::Display| Failure::Message(error.to_string());
-        let interpolation = self.interpolation.value();
+        let settings = Settings::read(self.settings.as_deref())?;
+        let interpolation = self.interpolation.or(settings.interpolation);
         let mut findings = Vec::new();
         interpolate(&mut file, interpolation);
         let mut lamp = file.luminaire;
+        settings.thin(&mut lamp)?;
         if !self.merge.is_empty() {
             let mut others = Vec::with_capacity(self.merge.len());
             for other in &self.merge {

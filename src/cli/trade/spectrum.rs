@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::output::{Asked, Traded, settings_file};
-use super::target::place;
+use super::target::{must_be_defined, place};
 use crate::cli::convert::single;
 use crate::cli::{Failure, Talk};
 use crate::constants::SecondRadiation;
@@ -42,13 +42,7 @@ pub(super) fn trade(arguments: &SpectrumArgs, talk: Talk) -> Result<(), Failure>
         .map_err(|e| Failure::Message(e.message))?;
     let found = sweep(&read.measured.spectrum, &Settings::default(), read.defined, asked.repeats as usize)
         .map_err(|e| Failure::Message(format!("{path}: {e}")))?;
-    if found.sweep.reference_errors[figure].is_none() {
-        let defined = FIGURES.iter().zip(&found.sweep.reference_errors).filter(|(_, e)| e.is_some());
-        let others: Vec<&str> = defined.map(|(f, _)| f.key.as_ref()).collect();
-        let message =
-            format!("{path}: has no {}; expected --figure with one of: {}", arguments.figure, others.join(", "));
-        return Err(Failure::Message(message));
-    }
+    must_be_defined(path, &found.sweep, figure)?;
     let traded = Traded {
         command: "trade spectrum",
         path,

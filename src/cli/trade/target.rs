@@ -3,11 +3,11 @@
 use std::str::FromStr;
 
 use crate::cli::Failure;
-use crate::trade::{Figure, Measure};
+use crate::trade::{Figure, Measure, Sweep};
 
 /// An error as it is written: `0.5%`, `0.005`, `20K`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Target {
+pub(in crate::cli) struct Target {
     value: f64,
     /// What stands behind the number.
     unit: String,
@@ -28,7 +28,7 @@ impl FromStr for Target {
 
 impl Target {
     /// The error in the figure's unit; relative ones as a fraction.
-    pub(super) fn of(&self, figure: &Figure) -> Result<f64, Failure> {
+    pub(in crate::cli) fn of(&self, figure: &Figure) -> Result<f64, Failure> {
         match (figure.measure, self.unit.as_str()) {
             (Measure::Relative, "%") => Ok(self.value / 100.0),
             (_, "") => Ok(self.value),
@@ -52,4 +52,16 @@ pub(super) fn place(figures: &[Figure], key: &str) -> Result<usize, Failure> {
         let known: Vec<&str> = figures.iter().map(|f| f.key.as_ref()).collect();
         Failure::Message(format!("`{key}`: no such figure; expected one of {}", known.join(", ")))
     })
+}
+
+/// Refuses a figure that the input does not have.
+pub(super) fn must_be_defined(path: &str, sweep: &Sweep, figure: usize) -> Result<(), Failure> {
+    if sweep.reference_errors[figure].is_some() {
+        return Ok(());
+    }
+    let defined = sweep.figures.iter().zip(&sweep.reference_errors).filter(|(_, e)| e.is_some());
+    let others: Vec<&str> = defined.map(|(f, _)| f.key.as_ref()).collect();
+    let message =
+        format!("{path}: has no {}; expected --figure with one of: {}", sweep.figures[figure].key, others.join(", "));
+    Err(Failure::Message(message))
 }

@@ -315,5 +315,11 @@ const EDGE_CELLS: usize = 48;
 /// Whether the opening of a luminaire is known, so that the error of taking it as a point can be.
 #[must_use]
 pub fn has_opening(luminaire: &Luminaire) -> bool {
-    luminaire.opening.as_ref().is_some_and(|body| opening::largest_dimension_m(body) > 0.0)
+    largest_dimension_m(luminaire).is_some()
+}
+
+/// The largest dimension of a luminaire's opening, m: its longest side, diameter or height. `None` where it is not known, or none.
+#[must_use]
+pub fn largest_dimension_m(luminaire: &Luminaire) -> Option<f64> {
+    luminaire.opening.as_ref().map(opening::largest_dimension_m).filter(|size| *size > 0.0)
 }

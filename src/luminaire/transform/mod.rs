@@ -13,6 +13,7 @@ mod planes;
 mod scale;
 mod sum;
 mod symmetrise;
+mod thin;
 mod turn;
 
 pub use grid::{Axis, Grid, Resampling};
@@ -20,6 +21,7 @@ pub use merge::{Part, merge};
 pub use scale::{Scale, scale};
 pub(in crate::luminaire) use sum::sum;
 pub use symmetrise::symmetrise;
+pub use thin::thinned;
 pub use turn::{Turn, turn};
 
 use super::{Distribution, Kind};
