@@ -104,6 +104,14 @@ fn filters_make_a_spectral_table_and_material() {
 }
 
 #[test]
+fn narrow_bands_are_no_merl_table() {
+    let folder = filters();
+    let (code, out, error) = run(folder.path(), &[&FIT[..], &["-o", "ball.binary"]].concat());
+    let words = "ball.binary: a MERL file has red, green and blue; found 450 nm, 500 nm, 600 nm, 700 nm; expected .csv or .alta";
+    assert!(code == 2 && out.is_empty() && error.contains(words), "{error}");
+}
+
+#[test]
 fn sets_of_filters_that_are_not_whole_say_so() {
     let folder = filters();
     photograph(&folder.path().join("flat.tif"), |_| 0.5);

@@ -144,6 +144,11 @@ impl Darkroom {
     fn find_vignetting(&mut self, photos: &mut Photos) -> Result<(), Failure> {
         let flat = photos.manifest.stack.iter().find(|s| s.shows == Shows::Flat).cloned();
         let Some(flat) = flat else { return Ok(()) };
+        if photos.manifest.flat.is_some() && !photos.manifest.wavelengths_nm().is_empty() {
+            let words = "found a [flat] of known radiance beside stacks of narrow bands, whose filters it does not tell; expected strengths \
+                         of the lights with unit_w_per_m2_sr, or a reference";
+            return Err(Failure::Message(words.to_owned()));
+        }
         photos.notes.stage("vignetting");
         let (picture, _) = self.merged(photos, &flat)?;
         let lens = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
@@ -157,11 +162,6 @@ impl Darkroom {
                 .push(Finding::warning("K026", words).hint("is it evenly lit, out of focus and clean?").at(place));
         }
         if let Some(stated) = &photos.manifest.flat {
-            if !photos.manifest.wavelengths_nm().is_empty() {
-                let words = "found a [flat] of known radiance beside stacks of narrow bands, whose filters it does not tell; expected strengths \
-                             of the lights with unit_w_per_m2_sr, or a reference";
-                return Err(Failure::Message(words.to_owned()));
-            }
             let (bands, level) = (&stated.radiance, &found.level);
             if bands.len() != 1 && bands.len() != level.len() {
                 return Err(Failure::Message(format!(

@@ -23,7 +23,7 @@ pub(super) enum CaptureCommand {
     Calibrate(calibrate::CalibrateArgs),
     /// Where the lights were, from a mirror ball or a diffuse one; the surroundings as a picture.
     Lights(lights::LightsArgs),
-    /// The BRDF of a photographed sphere, with its uncertainty: measured bins and fitted models.
+    /// The BRDF of a photographed sphere, cylinder, plane or mesh, with its uncertainty: measured bins and fitted models.
     Brdf(brdf::BrdfArgs),
     /// Print the JSON schema of the manifest.
     Schema,

@@ -6,7 +6,7 @@ use super::message;
 use crate::brdf::format::alta::{self, Encoding};
 use crate::brdf::format::convert::nodes;
 use crate::brdf::format::{csv, merl};
-use crate::brdf::table::{HalfAngle, Known, Table};
+use crate::brdf::table::{Channel, HalfAngle, Known, Table};
 use crate::capture::brdf::Filled;
 use crate::cli::Failure;
 
@@ -43,10 +43,10 @@ pub(super) fn encode(
 ) -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let table = filled.map_or(table, |f| &f.table);
     if target == Target::Merl {
-        let bytes = merl::write(table).ok_or_else(|| {
-            let bands = table.channels().len();
+        let bytes = merl::write(table).filter(|_| table.channels() == Channel::rgb()).ok_or_else(|| {
+            let names = table.channels().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
             Failure::Message(format!(
-                "{}: a MERL file has three channels; found {bands}; expected .csv or .alta",
+                "{}: a MERL file has red, green and blue; found {names}; expected .csv or .alta",
                 path.display()
             ))
         })?;
