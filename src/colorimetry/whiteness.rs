@@ -110,12 +110,12 @@ mod tests {
     fn whiteness_of_a_documented_example() {
         let formula = Formula::new(Daylight::D65, Observer::Cie1931).expect("defined");
         let found = formula.evaluate(xyz([0.3167, 0.3334], 100.0), [0.3139, 0.3311]).expect("light");
-        assert!((93.85..93.86).contains(&found.whiteness), "{found:?}");
-        assert!((-1.306..=-1.305 + 1e-12).contains(&found.tint), "{found:?}");
+        // The printed digits are all there are: 100 − 2.24 − 3.91 and −2.8 + 1.495.
+        assert!((found.whiteness - 93.85).abs() < 1e-10 && (found.tint - -1.305).abs() < 1e-10, "{found:?}");
         // t = 900 for 10°, by hand: 900·(−0.0028) + 650·0.0023.
         let formula = Formula::new(Daylight::D65, Observer::Cie1964).expect("defined");
         let found = formula.evaluate(xyz([0.3167, 0.3334], 100.0), [0.3139, 0.3311]).expect("light");
-        assert!((found.tint - -1.025).abs() < 1e-12, "{found:?}");
+        assert!((found.tint - -1.025).abs() < 1e-10, "{found:?}");
     }
 
     /// The example in the documentation of colour-science's `yellowness_ASTME313`: XYZ 95, 100, 105 gives 4.34; the others by hand

@@ -189,7 +189,7 @@ pub enum Error {
         /// Where it is.
         nanometres: f64,
     },
-    /// Lines reflect nothing of a continuous light.
+    /// Lines reflect nothing of a continuous light, and a single sample is no more than one.
     #[error("a line spectrum as reflectance or as illuminant; expected continuous spectra")]
     ReflectanceLines,
     /// A reflected light of a given level says nothing about the sample.

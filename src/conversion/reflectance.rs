@@ -31,7 +31,8 @@ impl Light {
         observer: &observer::Plan,
     ) -> Result<Option<Self>, Error> {
         let Some((name, light)) = &settings.illuminant else { return Ok(None) };
-        if sampling == Sampling::Lines || light.sampling() == Sampling::Lines {
+        let few = light.values().len() < 2;
+        if few || sampling == Sampling::Lines || light.sampling() == Sampling::Lines {
             return Err(Error::ReflectanceLines);
         }
         let table = Weighting::table(light.wavelengths_nm().to_vec(), light.values().to_vec());

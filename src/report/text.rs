@@ -63,7 +63,7 @@ pub(super) fn radiometric_name(quantity: Quantity) -> &'static str {
 pub fn conversion(heading: &str, c: &Conversion, settings: &Settings) -> String {
     let mut out = Lines(String::new());
     let kind = match c.quantity {
-        Quantity::Relative if c.xyz_scale == XyzScale::PerfectDiffuser => "reflectance".to_owned(),
+        _ if c.xyz_scale == XyzScale::PerfectDiffuser => "reflectance".to_owned(),
         Quantity::Relative => "relative spectrum".to_owned(),
         q => format!("spectral {}", radiometric_name(q)),
     };
