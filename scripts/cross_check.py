@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import itertools
 import json
 import math
 import subprocess
@@ -31,6 +32,7 @@ warnings.filterwarnings("ignore")
 
 import colour  # noqa: E402
 import numpy as np  # noqa: E402
+from colour.colorimetry import YELLOWNESS_COEFFICIENTS_ASTME313, whiteness_CIE2004, yellowness_ASTME313  # noqa: E402
 from colour.quality import cfi2017, cri  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -94,6 +96,10 @@ TOLERANCE = {
     "blackbody xy": 1e-12,
     "daylight xy": 1e-12,
     "bandwidth, measured neighbours (of the peak)": 1e-12,
+    "XYZ of reflectances, alike (relative)": 1e-12,
+    # 1700 times a rounding of the chromaticity.
+    "whiteness, tint": 1e-10,
+    "yellowness": 1e-10,
 }
 
 
@@ -599,6 +605,31 @@ def bandwidth(table: Table, binary: str) -> None:
         table.add("bandwidth, measured neighbours (of the peak)", path.stem, np.array(ours["value"]) / peak, alike / peak)
 
 
+def reflectances(table: Table, binary: str) -> None:
+    """The ColorChecker of ISO 17321-1 under D65 and C, with whiteness and yellowness of every patch, white or not."""
+    patches = colour.SDS_COLOURCHECKERS["ISO 17321-1"]
+    shape = next(iter(patches.values())).shape
+    with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+        rows = np.column_stack([shape.wavelengths, *(sd.values for sd in patches.values())])
+        file.write(",".join(["wavelength_nm", *(f"patch {i}" for i in range(len(patches)))]) + "\n")
+        np.savetxt(file, rows, fmt="%.17g", delimiter=",")
+        file.flush()
+        for (digits, cmfs), light in itertools.product(CMFS.items(), ("D65", "C")):
+            observer = {"2": "cie-1931-2deg", "10": "cie-1964-10deg"}[digits]
+            options = ["--illuminant", light, "--observer", observer, "--rule", "summation", "--figures", "luminous"]
+            compared = zip(patches.items(), photopic(binary, [file.name], options), strict=True)
+            eye, lamp = cmfs.copy().align(shape), colour.SDS_ILLUMINANTS[light].copy().align(shape)
+            white = colour.colorimetry.sd_to_XYZ_integration(colour.sd_ones(shape), eye, lamp)
+            coefficients = YELLOWNESS_COEFFICIENTS_ASTME313[cmfs.name][light]
+            for (name, sd), ours in compared:
+                where = f"{name}, {light}, {digits}°"
+                xyz = colour.colorimetry.sd_to_XYZ_integration(sd, eye, lamp)
+                table.add("XYZ of reflectances, alike (relative)", where, ours["xyz"], xyz, True)
+                theirs = whiteness_CIE2004(colour.XYZ_to_xy(xyz), xyz[1], colour.XYZ_to_xy(white), cmfs.name)
+                table.add("whiteness, tint", where, [ours["whiteness"], ours["tint"]], theirs)
+                table.add("yellowness", where, ours["yellowness_e313"], yellowness_ASTME313(xyz, coefficients))
+
+
 def compare(table: Table, case: Case) -> None:
     """All figures of one spectrum."""
     for figures in (photometric, chromatic, dominant, rendering, fidelity, rgb):
@@ -634,6 +665,7 @@ def main() -> int:
         compare(table, case)
     sources(table, binary)
     bandwidth(table, binary)
+    reflectances(table, binary)
     print(f"photopic against colour-science {colour.__version__} on {len(cases)} spectra")
     return 0 if table.print() else 1
 

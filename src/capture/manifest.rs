@@ -113,6 +113,12 @@ impl Stack {
     pub fn new(name: impl Into<String>, exposures: Vec<Exposure>) -> Self {
         Self { name: name.into(), shows: Shows::Object, light: None, ball: None, wavelength_nm: None, exposures }
     }
+
+    /// Name of its light: its own where it names none.
+    #[must_use]
+    pub fn lit_by(&self) -> &str {
+        self.light.as_deref().unwrap_or(&self.name)
+    }
 }
 
 /// What a stack shows.
@@ -152,6 +158,40 @@ impl Manifest {
         out
     }
 
+    /// The lights by name under which the object was photographed, in the order of their stacks.
+    #[must_use]
+    pub fn lights_used(&self) -> Vec<String> {
+        let mut out: Vec<String> = Vec::new();
+        for stack in self.stack.iter().filter(|s| s.shows == Shows::Object) {
+            if !out.iter().any(|l| l == stack.lit_by()) {
+                out.push(stack.lit_by().to_owned());
+            }
+        }
+        out
+    }
+
+    /// The largest number of exposures of a stack of the object.
+    #[must_use]
+    pub fn most_exposures(&self) -> usize {
+        let of_object = self.stack.iter().filter(|s| s.shows == Shows::Object);
+        of_object.map(|s| s.exposures.len()).max().unwrap_or(0)
+    }
+
+    /// Keeps so many of the lights under which the object was photographed, and of the exposures of each stack of object and reference, as if
+    /// no others had been taken: those in the middles of equal parts of the lights in their order, and of the exposures by rising time.
+    pub fn keep(&mut self, lights: usize, exposures: usize) {
+        let used = self.lights_used();
+        let kept: Vec<&String> = middles(used.len(), lights).map(|n| &used[n]).collect();
+        let is_photo = |s: &Stack| matches!(s.shows, Shows::Object | Shows::Reference);
+        self.stack.retain(|s| !is_photo(s) || lights >= used.len() || kept.iter().any(|l| *l == s.lit_by()));
+        for stack in self.stack.iter_mut().filter(|s| is_photo(s) && s.exposures.len() > exposures) {
+            let time = |e: &Exposure| e.time_s.unwrap_or(0.0);
+            stack.exposures.sort_by(|a, b| time(a).total_cmp(&time(b)));
+            let all = std::mem::take(&mut stack.exposures);
+            stack.exposures = middles(all.len(), exposures).map(|n| all[n].clone()).collect();
+        }
+    }
+
     /// How many objects are stated: one is expected.
     #[must_use]
     pub fn objects(&self) -> usize {
@@ -180,6 +220,12 @@ impl Manifest {
     pub fn parse(text: &str) -> Result<Self, Error> {
         mistake::parse(text)
     }
+}
+
+/// Numbers below `count` in the middles of so many equal parts; all where there are no more.
+fn middles(count: usize, parts: usize) -> impl Iterator<Item = usize> {
+    let parts = parts.min(count);
+    (0..parts).map(move |i| (2 * i + 1) * count / (2 * parts))
 }
 
 /// The JSON schema of manifests (draft 2020-12).

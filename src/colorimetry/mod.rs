@@ -16,5 +16,6 @@ pub mod rgb;
 pub mod samples;
 pub mod tm30;
 pub mod tolerance;
+pub mod whiteness;
 
 pub use observer::Observer;

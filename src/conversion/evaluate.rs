@@ -2,6 +2,7 @@
 
 use super::figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
 use super::{Error, Plan, Settings, shape};
+use crate::colorimetry::whiteness::Whiteness;
 use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb, tolerance};
 use crate::finding::{Checked, Finding};
 use crate::photometry::luminous::Luminous;
@@ -61,10 +62,10 @@ pub(super) fn evaluate(
         let message = format!("the {} that the geometry gives exceeds the largest double (1.8e308)", figures.quantity);
         findings.push(Finding::error("P011", message));
     }
-    let xyz_scale = if quantity == Quantity::Relative { XyzScale::Hundred } else { XyzScale::Absolute };
-    let factor = match xyz_scale {
-        XyzScale::Absolute => settings.efficacy.k_m,
-        XyzScale::Hundred => 100.0 / xyz[1],
+    let (xyz_scale, factor) = match &plan.light {
+        Some(light) => (XyzScale::PerfectDiffuser, light.scale()),
+        None if quantity == Quantity::Relative => (XyzScale::Hundred, 100.0 / xyz[1]),
+        None => (XyzScale::Absolute, settings.efficacy.k_m),
     };
     let xyz_1931 = plan.colour_1931.as_ref().map_or(xyz, |p| p.xyz(values));
     let coloured = lit.then_some(xyz).filter(|v| v[1] > 0.0);
@@ -77,7 +78,7 @@ pub(super) fn evaluate(
         efficacy_lm_per_w: if lit { luminous.efficacy_lm_per_w().filter(|_| luminous.radiometric > 0.0) } else { None },
         scotopic_photopic_ratio: if lit { luminous.scotopic_photopic_ratio() } else { None },
         xyz: match xyz_scale {
-            XyzScale::Absolute => Some(xyz.map(|v| v * factor)),
+            XyzScale::Absolute | XyzScale::PerfectDiffuser => Some(xyz.map(|v| v * factor)),
             XyzScale::Hundred => coloured.map(|v| v.map(|v| v * factor)),
         },
         xyz_scale,
@@ -85,6 +86,7 @@ pub(super) fn evaluate(
         uv_prime: coloured.and_then(chromaticity::uv_prime),
         cct: None,
         tolerance: None,
+        whiteness: None,
         dominant: None,
         peak_wavelength_nm: None,
         centroid_wavelength_nm: None,
@@ -99,8 +101,13 @@ pub(super) fn evaluate(
     };
     if lit {
         colour(settings, plan, values, uv, &mut out, &mut findings);
-        let white = out.cct.filter(|c| NOMINAL_WHITE_K.contains(&c.kelvin));
-        out.tolerance = white.and(chromaticity::xy(xyz_1931)).and_then(tolerance::nearest);
+        match &plan.light {
+            Some(light) => whiteness(light.whiteness(xyz.map(|v| v * factor)), &mut out, &mut findings),
+            None => {
+                let white = out.cct.filter(|c| NOMINAL_WHITE_K.contains(&c.kelvin));
+                out.tolerance = white.and(chromaticity::xy(xyz_1931)).and_then(tolerance::nearest);
+            }
+        }
     }
     if groups.rgb {
         out.rgb = rgb_figures(settings, xyz_1931, lit, &mut findings);
@@ -120,6 +127,14 @@ pub(super) fn evaluate(
         form(plan, spectrum, luminous.radiometric, &mut out, &mut findings);
     }
     Ok(Checked { value: out, findings })
+}
+
+fn whiteness(found: Option<Whiteness>, out: &mut Conversion, findings: &mut Vec<Finding>) {
+    if let Some(why) = found.and_then(|w| w.outside()) {
+        let message = format!("outside of the limits within which CIE 15:2004 speaks of whiteness and tint: {why}");
+        findings.push(Finding::warning("C008", message));
+    }
+    out.whiteness = found;
 }
 
 /// Says why a ratio is null where the spectrum as a whole has light.
@@ -277,7 +292,8 @@ fn colour(
             Ok(cct) => out.cct = Some(cct),
             Err(why) => findings.push(Finding::warning("C001", format!("no correlated colour temperature: {why}"))),
         }
-        out.dominant = out.xy.and_then(|xy| dominant::dominant(xy, settings.dominant_white_xy, settings.observer));
+        let white = plan.light.as_ref().map_or(settings.dominant_white_xy, |l| l.white_xy);
+        out.dominant = out.xy.and_then(|xy| dominant::dominant(xy, white, settings.observer));
         if out.dominant.is_none() {
             findings.push(Finding::info("C005", "no dominant wavelength: the chromaticity is that of the white point"));
         }

@@ -6,6 +6,7 @@ use crate::colorimetry::dominant::Dominant;
 use crate::colorimetry::rgb::Colour;
 use crate::colorimetry::tm30::Tm30;
 use crate::colorimetry::tolerance::Tolerance;
+use crate::colorimetry::whiteness::Whiteness;
 use crate::photometry::alpha_opic::AlphaOpic;
 use crate::photometry::hazard::Hazard;
 use crate::photometry::mesopic::Adaptation;
@@ -65,6 +66,8 @@ pub enum XyzScale {
     Absolute,
     /// Y = 100.
     Hundred,
+    /// Y = 100 of the perfect reflecting diffuser.
+    PerfectDiffuser,
 }
 
 /// A colour in one RGB space.
@@ -104,6 +107,8 @@ pub struct Conversion {
     pub cct: Option<Cct>,
     /// Where the light stands to the nearest nominal white (CIE 1931 observer); `None` without a colour temperature.
     pub tolerance: Option<Tolerance>,
+    /// Whiteness, tint and yellowness of a reflectance under C or D65.
+    pub whiteness: Option<Whiteness>,
     /// Dominant wavelength and purity.
     pub dominant: Option<Dominant>,
     /// Wavelength of the largest sample, nm.

@@ -19,6 +19,7 @@ use crate::{illuminant, tables};
 
 mod evaluate;
 mod figures;
+mod reflectance;
 mod scale;
 pub(crate) mod shape;
 
@@ -111,6 +112,9 @@ pub struct Settings {
     pub adaptation: Transform,
     /// Photopic luminance of the adapting field, cd/m², for mesopic figures.
     pub mesopic_adaptation: Option<f64>,
+    /// The light, by name and spectrum, under which relative spectra are reflectance factors (1 of the perfect diffuser): every
+    /// figure is then one of the light reflected.
+    pub illuminant: Option<(String, Spectrum)>,
     /// Geometry that connects quantities.
     pub geometry: Geometry,
     /// Groups of figures.
@@ -133,6 +137,7 @@ impl Default for Settings {
             rgb_white: None,
             adaptation: Transform::default(),
             mesopic_adaptation: None,
+            illuminant: None,
             geometry: Geometry::default(),
             groups: Groups::ALL,
             level: None,
@@ -168,6 +173,34 @@ pub enum Error {
     /// Mesopic adaptation is impossible.
     #[error(transparent)]
     Mesopic(#[from] mesopic::Error),
+    /// A reflectance is a ratio.
+    #[error("{quantity} under an illuminant; expected a reflectance, which is relative")]
+    ReflectanceQuantity {
+        /// The quantity met.
+        quantity: Quantity,
+    },
+    /// A reflectance in per cent.
+    #[error(
+        "a reflectance factor of {largest} at {nanometres} nm; expected fractions, 1 being the perfect diffuser (84 % is 0.84)"
+    )]
+    ReflectanceFactor {
+        /// The largest sample.
+        largest: f64,
+        /// Where it is.
+        nanometres: f64,
+    },
+    /// Lines reflect nothing of a continuous light, and a single sample is no more than one.
+    #[error("a line spectrum as reflectance or as illuminant; expected continuous spectra")]
+    ReflectanceLines,
+    /// A reflected light of a given level says nothing about the sample.
+    #[error("a level for a reflectance; expected one or the other, a level or an illuminant")]
+    ReflectanceLevel,
+    /// The illuminant has no light where the sample is known.
+    #[error("the illuminant {name} has no luminous content at the sample's wavelengths; expected one that has")]
+    DarkIlluminant {
+        /// The illuminant.
+        name: String,
+    },
     /// The spectrum could not be scaled.
     #[error(transparent)]
     Level(#[from] LevelError),
@@ -193,6 +226,8 @@ pub(crate) struct Plan {
     pub(crate) rule: Rule,
     pub(crate) luminous: luminous::Plan,
     pub(crate) colour: observer::Plan,
+    /// The illuminant of reflectances.
+    pub(crate) light: Option<reflectance::Light>,
     /// CIE 1931 observer, in which CCT is defined, where the user chose another for XYZ.
     pub(crate) colour_1931: Option<observer::Plan>,
     pub(crate) cri: Option<cri::Plan>,
@@ -211,10 +246,12 @@ impl Plan {
         let groups = settings.groups;
         let observer_plan = |o| observer::Plan::new(o, grid, sampling, contract);
         let weights = |w| crate::spectrum::integrate::weights(grid, sampling, &w, contract);
+        let colour = observer_plan(settings.observer)?;
         Ok(Self {
+            light: reflectance::Light::new(settings, grid, sampling, &colour)?,
             rule: contract.rule_on(grid, sampling)?,
             luminous: luminous::Plan::new(settings.efficiency, settings.efficacy, grid, sampling, contract)?,
-            colour: observer_plan(settings.observer)?,
+            colour,
             colour_1931: match settings.observer {
                 Observer::Cie1931 => None,
                 _ => Some(observer_plan(Observer::Cie1931)?),
@@ -301,6 +338,12 @@ impl Converter {
         let resampled = settings.resampling.as_ref().map(|r| r.apply(spectrum)).transpose()?;
         let spectrum = resampled.as_ref().unwrap_or(spectrum);
         let plan = self.plan(spectrum.grid(), spectrum.sampling())?;
+        if let Some(light) = &plan.light {
+            if settings.level.is_some() {
+                return Err(Error::ReflectanceLevel);
+            }
+            return evaluate::evaluate(settings, &plan, name, quantity, &light.reflected(quantity, spectrum)?);
+        }
         let Some(level) = &settings.level else {
             return evaluate::evaluate(settings, &plan, name, quantity, spectrum);
         };

@@ -73,14 +73,6 @@ pub fn best(answer: &Answer<'_>) -> usize {
     answer.comparison.map_or_else(least, |c| c.ranked[0].fit)
 }
 
-/// `ggx.alpha`, or with the number of the model in the sum where two are alike: `2.ggx.alpha`.
-fn name(fit: &Fit, e: &Estimate) -> String {
-    let open = &fit.template.open()[e.open];
-    let twins = fit.template.open().iter().any(|o| o.model == open.model && o.part != open.part);
-    let number = if twins { format!("{}.", open.part + 1) } else { String::new() };
-    format!("{number}{}.{}", open.model, open.parameter.name)
-}
-
 fn band(samples: &Samples, e: &Estimate) -> Option<Value> {
     e.band.map(|b| match &samples.channels()[b] {
         Channel::Wavelength(nm) => json!({"wavelength_nm": nm}),
@@ -89,7 +81,7 @@ fn band(samples: &Samples, e: &Estimate) -> Option<Value> {
 }
 
 pub(super) fn label(samples: &Samples, fit: &Fit, e: &Estimate) -> String {
-    e.band.map_or_else(|| name(fit, e), |b| format!("{} [{}]", name(fit, e), samples.channels()[b]))
+    e.band.map_or_else(|| fit.name_of(e), |b| format!("{} [{}]", fit.name_of(e), samples.channels()[b]))
 }
 
 fn parameter(samples: &Samples, fit: &Fit, e: &Estimate) -> Value {
@@ -102,7 +94,7 @@ fn parameter(samples: &Samples, fit: &Fit, e: &Estimate) -> Value {
         Uncertainty::Undefined => (None, None, "undefined"),
     };
     let mut out = Map::new();
-    out.insert("name".to_owned(), name(fit, e).into());
+    out.insert("name".to_owned(), fit.name_of(e).into());
     if let Some(Value::Object(of)) = band(samples, e) {
         out.extend(of);
     }

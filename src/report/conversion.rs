@@ -99,11 +99,17 @@ pub fn settings(settings: &Settings) -> Value {
     out.insert("observer".into(), json!(settings.observer));
     out.insert("second_radiation_constant_m_k".into(), settings.c2.metre_kelvin().into());
     out.insert("cct_method".into(), json!(settings.cct_method));
-    out.insert("dominant_wavelength_white_xy".into(), json!(settings.dominant_white_xy));
+    out.insert(
+        "dominant_wavelength_white_xy".into(),
+        settings.illuminant.as_ref().map_or_else(|| json!(settings.dominant_white_xy), |_| json!("of the illuminant")),
+    );
     out.insert("chromatic_adaptation".into(), json!(settings.adaptation));
     out.insert("rgb_white_xyz".into(), settings.rgb_white.map_or_else(|| json!("of each space"), |w| json!(w)));
     if let Some(luminance) = settings.mesopic_adaptation {
         out.insert("mesopic_adaptation_cd_per_m2".into(), luminance.into());
+    }
+    if let Some((name, _)) = &settings.illuminant {
+        out.insert("illuminant".into(), json!(name));
     }
     if !settings.geometry.is_empty() {
         out.insert("geometry".into(), json!(settings.geometry));
@@ -155,11 +161,17 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
         match c.xyz_scale {
             XyzScale::Absolute => "K_m times the integrals",
             XyzScale::Hundred => "Y = 100",
+            XyzScale::PerfectDiffuser => "Y = 100 of the perfect diffuser",
         }
         .into(),
     );
     set("chromaticity_xy", pair(c.xy));
     set("chromaticity_uv_prime", pair(c.uv_prime));
+    if let Some(w) = &c.whiteness {
+        set("whiteness", w.whiteness.into());
+        set("tint", w.tint.into());
+        set("yellowness_e313", w.yellowness.into());
+    }
     if groups.colour {
         set("cct_k", number(c.cct.map(|v| v.kelvin)));
         set("duv", number(c.cct.map(|v| v.duv)));

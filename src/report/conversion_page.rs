@@ -6,7 +6,7 @@ use super::csv::at;
 use super::envelope::Input;
 use super::html::{Block, Figure, Page, Section};
 use super::uncertainty::{leading, measured_path, shown};
-use crate::conversion::Conversion;
+use crate::conversion::{Conversion, XyzScale};
 use crate::finding::Finding;
 use crate::photometry::alpha_opic::RECEPTORS;
 use crate::photometry::hazard::WEIGHTINGS;
@@ -38,6 +38,7 @@ pub struct Parts<'a> {
 #[must_use]
 pub fn page(p: &Parts<'_>) -> Page {
     let quantity = match p.conversion.quantity {
+        _ if p.conversion.xyz_scale == XyzScale::PerfectDiffuser => "A reflectance".to_owned(),
         crate::spectrum::Quantity::Relative => "A relative spectrum".to_owned(),
         q => format!("Spectral {q}"),
     };

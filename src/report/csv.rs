@@ -9,7 +9,7 @@ use crate::photometry::alpha_opic::RECEPTORS;
 use crate::spectrum::Quantity;
 
 /// A column: its header, and the path to its value in the JSON object (`a.b.0`).
-fn columns(groups: Groups, mesopic: bool) -> Vec<String> {
+fn columns(groups: Groups, mesopic: bool, reflectance: bool) -> Vec<String> {
     let mut out: Vec<String> = ["path", "name", "quantity"].map(str::to_owned).to_vec();
     let kinds = ["photopic", "radiometric", "scotopic"].into_iter().chain(mesopic.then_some("mesopic"));
     for kind in kinds {
@@ -20,6 +20,9 @@ fn columns(groups: Groups, mesopic: bool) -> Vec<String> {
     let mut add = |list: &[&str]| out.extend(list.iter().map(|s| (*s).to_owned()));
     add(&["luminous_efficacy_of_radiation_lm_per_w", "scotopic_photopic_ratio", "xyz.0", "xyz.1", "xyz.2"]);
     add(&["chromaticity_xy.0", "chromaticity_xy.1", "chromaticity_uv_prime.0", "chromaticity_uv_prime.1"]);
+    if reflectance {
+        add(&["whiteness", "tint", "yellowness_e313"]);
+    }
     if groups.colour {
         add(&["cct_k", "duv", "dominant_wavelength_nm", "excitation_purity"]);
     }
@@ -57,10 +60,10 @@ pub struct Table {
 }
 
 impl Table {
-    /// The table of the groups of figures; with uncertainties each figure has three more columns.
+    /// The table of the groups of figures, of reflectances with their whiteness; with uncertainties each figure has three more columns.
     #[must_use]
-    pub fn new(groups: Groups, mesopic: bool, uncertainty: bool) -> Self {
-        let mut columns = columns(groups, mesopic);
+    pub fn new(groups: Groups, mesopic: bool, reflectance: bool, uncertainty: bool) -> Self {
+        let mut columns = columns(groups, mesopic, reflectance);
         if uncertainty {
             let no_figure = |c: &String| {
                 ["path", "name", "quantity"].contains(&c.as_str())

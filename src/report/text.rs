@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::colorimetry::tolerance::{Tolerance, UV_PRIME_STEP};
-use crate::conversion::{AbsoluteFigures, Conversion, Settings};
+use crate::conversion::{AbsoluteFigures, Conversion, Settings, XyzScale};
 use crate::spectrum::Quantity;
 use crate::spectrum::integrate::Rule;
 use crate::units::significant;
@@ -63,6 +63,7 @@ pub(super) fn radiometric_name(quantity: Quantity) -> &'static str {
 pub fn conversion(heading: &str, c: &Conversion, settings: &Settings) -> String {
     let mut out = Lines(String::new());
     let kind = match c.quantity {
+        _ if c.xyz_scale == XyzScale::PerfectDiffuser => "reflectance".to_owned(),
         Quantity::Relative => "relative spectrum".to_owned(),
         q => format!("spectral {}", radiometric_name(q)),
     };
@@ -123,6 +124,10 @@ fn colour(out: &mut Lines, c: &Conversion, settings: &Settings) {
     }
     if let Some([u, v]) = c.uv_prime {
         out.line("chromaticity u′, v′", format!("{u:.5}, {v:.5}"));
+    }
+    if let Some(w) = &c.whiteness {
+        out.line("whiteness W, tint T", format!("{:.2}, {:+.2}", w.whiteness, w.tint));
+        out.line("yellowness YI (E313)", format!("{:.2}", w.yellowness));
     }
     if let Some(cct) = c.cct {
         // A blackbody's distance from its own locus is rounding; −0.00000 would look like a statement.

@@ -6,6 +6,7 @@
 //! its own error ([`Sweep::reference_errors`]) is added wherever an error must be guaranteed, and differences below it are noise.
 
 pub mod brdf;
+pub mod capture;
 pub mod image;
 pub mod lamp;
 pub mod render;

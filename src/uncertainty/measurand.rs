@@ -38,6 +38,12 @@ pub enum Measurand {
     Cct,
     /// Distance from the Planckian locus in (u, v) 1960.
     Duv,
+    /// Whiteness W of a reflectance.
+    Whiteness,
+    /// Tint T of a reflectance.
+    Tint,
+    /// Yellowness YI of a reflectance.
+    Yellowness,
     /// Dominant wavelength, nm, of the same sign as the measured one.
     DominantWavelength,
     /// Excitation purity.
@@ -111,6 +117,9 @@ impl fmt::Display for Measurand {
             Self::UniformChromaticity(k) => f.write_str(["u′", "v′"][*k]),
             Self::Cct => f.write_str("CCT"),
             Self::Duv => f.write_str("Duv"),
+            Self::Whiteness => f.write_str("whiteness"),
+            Self::Tint => f.write_str("tint"),
+            Self::Yellowness => f.write_str("yellowness"),
             Self::DominantWavelength => f.write_str("dominant wavelength"),
             Self::ExcitationPurity => f.write_str("excitation purity"),
             Self::PeakWavelength => f.write_str("peak wavelength"),
@@ -137,6 +146,7 @@ impl fmt::Display for Measurand {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scratch {
     scaled: Vec<f64>,
+    reflected: Vec<f64>,
     reference: ReferenceScratch,
 }
 
@@ -182,7 +192,7 @@ impl<'a> Figures<'a> {
 
     /// Calls `put` with every figure of `list`, in its order, and its value, NaN where it is not defined.
     pub(super) fn each(&self, measured: &[f64], scratch: &mut Scratch, mut put: impl FnMut(Measurand, f64)) {
-        let Scratch { scaled, reference } = scratch;
+        let Scratch { scaled, reflected, reference } = scratch;
         let values = match (&self.measured, &self.settings.resampling) {
             (Some(spectrum), Some(resampling)) => {
                 let mut values = measured.iter();
@@ -197,6 +207,15 @@ impl<'a> Figures<'a> {
             }
             _ => measured,
         };
+        let values = match &self.plan.light {
+            Some(light) => {
+                reflected.clear();
+                reflected.extend_from_slice(values);
+                light.shine(reflected);
+                &*reflected
+            }
+            None => values,
+        };
         let mut luminous = self.plan.luminous.evaluate(values);
         // A level holds one integral; every other goes with the factor.
         let factor = match &self.settings.level {
@@ -209,11 +228,21 @@ impl<'a> Figures<'a> {
         let relative = self.quantity == Quantity::Relative && self.settings.level.is_none();
         self.luminous(&luminous, relative, &mut put);
         let xyz = self.plan.colour.xyz(values);
-        let colour_scale = if relative { 100.0 / xyz[1] } else { factor * self.settings.efficacy.k_m };
+        let colour_scale = match &self.plan.light {
+            Some(light) => light.scale(),
+            None if relative => 100.0 / xyz[1],
+            None => factor * self.settings.efficacy.k_m,
+        };
         for (k, v) in xyz.iter().enumerate() {
             put(Measurand::Tristimulus(k), v * colour_scale);
         }
         self.chromaticity(values, xyz, &mut put);
+        if let Some(light) = self.plan.light.as_ref().filter(|l| l.has_whiteness()) {
+            let found = light.whiteness(xyz.map(|v| v * colour_scale));
+            put(Measurand::Whiteness, found.map_or(f64::NAN, |w| w.whiteness));
+            put(Measurand::Tint, found.map_or(f64::NAN, |w| w.tint));
+            put(Measurand::Yellowness, found.map_or(f64::NAN, |w| w.yellowness));
+        }
         self.shape(values, &mut put);
         self.rendition(values, reference, &mut put);
         if let Some(plan) = &self.plan.alpha_opic {
@@ -275,8 +304,9 @@ impl<'a> Figures<'a> {
             .and_then(|uv| cct::correlated(uv, self.settings.cct_method, self.settings.c2).ok());
         put(Measurand::Cct, found.map_or(f64::NAN, |c| c.kelvin));
         put(Measurand::Duv, found.map_or(f64::NAN, |c| c.duv));
+        let white = self.plan.light.as_ref().map_or(self.settings.dominant_white_xy, |l| l.white_xy);
         let found = xy
-            .and_then(|xy| dominant::dominant(xy, self.settings.dominant_white_xy, self.settings.observer))
+            .and_then(|xy| dominant::dominant(xy, white, self.settings.observer))
             // While the sign of the measured one is not known, any counts: see `new`.
             .filter(|d| self.list.is_empty() || (d.wavelength_nm < 0.0) == self.complementary);
         put(Measurand::DominantWavelength, found.map_or(f64::NAN, |d| d.wavelength_nm));
@@ -319,9 +349,9 @@ impl<'a> Figures<'a> {
         }
     }
 
-    /// Whether amounts go with the samples, and are not held by a level or by Y = 100.
+    /// Whether amounts go with the samples, and are not held by a level or by Y = 100; those of a reflectance do.
     pub(super) fn is_proportional(&self) -> bool {
-        self.quantity != Quantity::Relative && self.settings.level.is_none()
+        self.plan.light.is_some() || (self.quantity != Quantity::Relative && self.settings.level.is_none())
     }
 }
 

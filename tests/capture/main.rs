@@ -12,3 +12,4 @@ mod response;
 mod shapes;
 mod spectral;
 mod spheres;
+mod trade;

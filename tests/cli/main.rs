@@ -9,6 +9,7 @@ mod flicker;
 mod inputs;
 mod outputs;
 mod quantities;
+mod reflectance;
 mod report;
 mod trade;
 mod uncertainty;

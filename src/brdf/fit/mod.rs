@@ -198,6 +198,17 @@ pub struct Fit {
     pub converged: bool,
 }
 
+impl Fit {
+    /// `ggx.alpha`, or with the number of the model in the sum where two are alike: `2.ggx.alpha`.
+    #[must_use]
+    pub fn name_of(&self, estimate: &Estimate) -> String {
+        let open = &self.template.open()[estimate.open];
+        let twins = self.template.open().iter().any(|o| o.model == open.model && o.part != open.part);
+        let number = if twins { format!("{}.", open.part + 1) } else { String::new() };
+        format!("{number}{}.{}", open.model, open.parameter.name)
+    }
+}
+
 /// Limits of the minimisation on the subset.
 const FIRST: Limits = Limits { iterations: 60, step: 1e-6, gain: 1e-9 };
 /// Valleys that are followed beyond the first subset.

@@ -10,6 +10,8 @@ mod response;
 
 use clap::Subcommand;
 
+pub(super) use self::brdf::{FITTED, Retaken, Taken};
+
 use super::{Failure, Talk};
 
 /// Verbs of `capture`.

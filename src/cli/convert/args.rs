@@ -6,10 +6,12 @@ use clap::{Args, ValueEnum};
 use serde::Deserialize;
 
 use super::measures;
+use crate::cli::Failure;
 use crate::colorimetry::adaptation::Transform;
 use crate::colorimetry::{Observer, cct, chromaticity};
 use crate::constants::{K_M, K_M_SCOTOPIC, SecondRadiation};
 use crate::conversion::{Groups, Level, Resampling, Settings};
+use crate::illuminant::named;
 use crate::photometry::luminous::{Efficacy, Efficiency};
 use crate::photometry::transfer::{Geometry, Shape};
 use crate::spectrum::format::{Format, Layout, ReadOptions};
@@ -31,6 +33,7 @@ Examples:
   photopic convert lamp.csv --plot lamp.svg
   photopic convert lamp.csv --uncertainty budget.toml         (every figure with its uncertainty)
   photopic convert lamp.csv --uncertainty budget.toml --report lamp.html
+  photopic convert paper.csv --illuminant D65                 (a reflectance: whiteness, tint, yellowness)
   cat lamp.csv | photopic convert - --csv")]
 pub(in crate::cli) struct ConvertArgs {
     /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
@@ -149,7 +152,11 @@ pub(super) struct Colour {
     /// How CCT and Duv are found: by minimising the distance to the locus, or by Ohno's table.
     #[arg(long, value_enum, default_value = "exact")]
     pub cct_method: CctArg,
-    /// White point x,y of dominant wavelength and purity; by default equal energy.
+    /// Take the input as a reflectance (1 is the perfect diffuser) under this light, a source by name (D65, C, A, FL11, blackbody:2856K):
+    /// all figures are of the light reflected; under D65 and C with whiteness, tint and yellowness.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["scale_to", "white"])]
+    pub illuminant: Option<String>,
+    /// White point x,y of dominant wavelength and purity; by default equal energy, of a reflectance its illuminant.
     #[arg(long, value_name = "X,Y", value_parser = measures::xy)]
     pub white: Option<[f64; 2]>,
     /// White x,y to which the eye is adapted, for RGB; by default each space's own.
@@ -375,10 +382,21 @@ impl ConvertArgs {
         }
     }
 
-    /// The settings of the conversion.
-    pub(super) fn settings(&self) -> Settings {
+    /// The settings of the conversion; an illuminant that is none is a failure.
+    pub(super) fn settings(&self) -> Result<Settings, Failure> {
         let (i, c, g) = (&self.integration, &self.colour, &self.geometry);
-        Settings {
+        let c2 = match c.c2 {
+            C2Arg::Its90 => SecondRadiation::Its90,
+            C2Arg::Si => SecondRadiation::Si,
+            C2Arg::Nbs1931 => SecondRadiation::Nbs1931,
+        };
+        let light = |name: &String| {
+            let source = named::source(name, c2);
+            source
+                .map(|source| (source.name, source.spectrum))
+                .map_err(|e| Failure::Message(format!("--illuminant {name}: {e}")))
+        };
+        Ok(Settings {
             contract: Contract { rule: i.rule.map(Into::into), range_nm: i.range },
             resampling: i.resample.map(|step_nm| Resampling {
                 step_nm,
@@ -399,11 +417,7 @@ impl ConvertArgs {
             efficiency: i.efficiency,
             efficacy: Efficacy { k_m: i.k_m, k_m_scotopic: i.k_m_scotopic },
             observer: c.observer,
-            c2: match c.c2 {
-                C2Arg::Its90 => SecondRadiation::Its90,
-                C2Arg::Si => SecondRadiation::Si,
-                C2Arg::Nbs1931 => SecondRadiation::Nbs1931,
-            },
+            c2,
             cct_method: match c.cct_method {
                 CctArg::Exact => cct::Method::Exact,
                 CctArg::Ohno2013 => cct::Method::Ohno2013,
@@ -412,6 +426,7 @@ impl ConvertArgs {
             rgb_white: c.rgb_white.and_then(chromaticity::xyz_of_xy),
             adaptation: c.adaptation,
             mesopic_adaptation: i.mesopic_adaptation,
+            illuminant: c.illuminant.as_ref().map(light).transpose()?,
             geometry: Geometry {
                 distance_m: g.distance,
                 incidence_rad: g.incidence,
@@ -425,7 +440,7 @@ impl ConvertArgs {
             },
             groups: self.groups(),
             level: g.scale_to.clone(),
-        }
+        })
     }
 
     fn groups(&self) -> Groups {

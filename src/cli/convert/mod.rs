@@ -49,10 +49,11 @@ struct Job<'a> {
 
 impl Job<'_> {
     /// Whether a finding of a reader still holds: of negative samples the conversion says more, with their effect; that a
-    /// spectrum is relative is settled by a level.
+    /// spectrum is relative is settled by a level, and wanted of a reflectance.
     fn tells(&self, finding: &Finding) -> bool {
-        finding.code != "S005"
-            && !(self.converter.settings().level.is_some() && matches!(finding.code, "S010" | "P001"))
+        let settings = self.converter.settings();
+        let ratios_do = settings.level.is_some() || settings.illuminant.is_some();
+        finding.code != "S005" && !(ratios_do && matches!(finding.code, "S010" | "P001"))
     }
 }
 
@@ -83,7 +84,7 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
     if let Some(path) = arguments.integration.settings.clone() {
         settings::apply(&path, &mut arguments.integration)?;
     }
-    let settings = arguments.settings();
+    let settings = arguments.settings()?;
     let budget = arguments.uncertainty.budget.as_deref().map(budget::read).transpose()?;
     settings.geometry.check().map_err(|e| Failure::Message(e.to_string()))?;
     if arguments.files.iter().filter(|f| *f == "-").count() > 1 {
@@ -96,7 +97,12 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
         (_, true) => Form::Csv,
         _ => Form::Text,
     };
-    let table = csv_report::Table::new(settings.groups, settings.mesopic_adaptation.is_some(), budget.is_some());
+    let table = csv_report::Table::new(
+        settings.groups,
+        settings.mesopic_adaptation.is_some(),
+        settings.illuminant.is_some(),
+        budget.is_some(),
+    );
     let settings_json = json_report::settings(&settings);
     let job = Job { arguments: &arguments, converter: Converter::new(settings), budget, table, form };
     if let (Some(results), Some(picture)) = (&arguments.output.output, &arguments.output.plot)

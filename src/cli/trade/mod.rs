@@ -1,6 +1,7 @@
 //! `trade`: what each speed knob costs in accuracy, measured on the user's own input; one file per kind of input.
 
 mod brdf;
+mod capture;
 mod image;
 mod lamp;
 mod output;
@@ -21,6 +22,8 @@ pub(super) enum TradeCommand {
     Spectrum(spectrum::SpectrumArgs),
     /// Bins, models and principal components of a material.
     Brdf(Box<brdf::BrdfArgs>),
+    /// Lights, exposures and pixels of the photographs of an object of known shape.
+    Capture(Box<capture::CaptureArgs>),
     /// Bands, pixels and precision of a spectral image.
     Image(Box<image::ImageArgs>),
     /// Angles, interpolation and precision of a lamp's table, and from where on the lamp is a point.
@@ -33,6 +36,7 @@ pub(super) fn run(command: TradeCommand, talk: Talk) -> Result<(), Failure> {
     match command {
         TradeCommand::Spectrum(a) => spectrum::trade(&a, talk),
         TradeCommand::Brdf(a) => brdf::trade(&a, talk),
+        TradeCommand::Capture(a) => capture::trade(&a, talk),
         TradeCommand::Image(a) => image::trade(&a, talk),
         TradeCommand::Lamp(a) => lamp::trade(&a, talk),
         TradeCommand::Render(a) => render::trade(&a, talk),

@@ -3,9 +3,11 @@
 mod align;
 mod files;
 mod fill;
+mod measured;
 mod mesh;
 mod report;
 mod run;
+mod settings;
 mod shots;
 
 use std::path::PathBuf;
@@ -14,8 +16,7 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::json;
 
-use super::develop::Darkroom;
-use super::photos::{Form, Given, Photos};
+use super::photos::{Form, Given, Photos, is_manifest};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Selection, Weighting};
 use crate::capture::brdf::{Limits, Observations, Scene, apart, bin, deviations};
@@ -27,16 +28,17 @@ use crate::finding::{Finding, Location};
 use crate::report::capture_brdf::{self, Scale, StackSeen};
 use crate::report::capture_develop::{self, Developed};
 use crate::report::{brdf_fit, capture_page};
-use align::align;
 use files::{Target, encode};
 use fill::{FillArgs, Filler};
+use measured::{Measured, measure};
+pub(in crate::cli) use measured::{Retaken, Taken};
 pub(super) use run::picture;
-use run::{Run, mask_of};
+use settings::UseArgs;
 
 /// Models that are fitted where none are named.
 const MODELS: [&str; 5] = ["lambert", "phong", "blinn-phong", "ward", "lambert + ggx"];
 /// Measurements that the fits use at most, drawn evenly: standard errors fall no further where the model is what limits.
-const FITTED: usize = 40_000;
+pub(in crate::cli) const FITTED: usize = 40_000;
 
 /// The manifest, which pixels, which models, and the form of the answer.
 #[derive(Debug, Args)]
@@ -75,9 +77,8 @@ pub(in crate::cli) struct BrdfArgs {
     /// too, and the pixel is masked.
     #[arg(long, value_name = "SHARE", default_value_t = Limits::default().max_self_view)]
     max_self_view: f64,
-    /// Use every N-th pixel of every N-th row.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    every: usize,
+    #[command(flatten)]
+    used: UseArgs,
     /// A picture of the size of the photographs, brighter than half where the object is, instead of the manifest's.
     #[arg(long, value_name = "PICTURE")]
     mask: Option<PathBuf>,
@@ -115,9 +116,10 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     if !(0.0..=1.0).contains(&a.max_self_view) {
         return Err(Failure::Message(format!("--max-self-view is {}; expected 0 to 1", a.max_self_view)));
     }
-    if a.every == 0 || a.subsample == 0 {
-        return Err(Failure::Message("found 0 for --every or --subsample; expected 1 or more".to_owned()));
+    if a.subsample == 0 {
+        return Err(Failure::Message("found 0 for --subsample; expected 1 or more".to_owned()));
     }
+    let used = a.used.read()?;
     let targets = a.output.iter().map(|p| Target::of(p)).collect::<Result<Vec<_>, _>>()?;
     let models = match a.models.as_slice() {
         [] => MODELS.iter().map(|m| m.parse().map_err(message)).collect::<Result<Vec<Template>, _>>()?,
@@ -125,28 +127,16 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     };
     let filler = Filler::open(&a.fill)?;
     let mut photos = Photos::open("capture brdf", &a.given, talk)?;
+    photos.manifest.keep(used.lights.unwrap_or(usize::MAX), used.exposures.unwrap_or(usize::MAX));
     let limits = Limits {
         max_theta_i_deg: a.max_theta_i,
         max_theta_o_deg: a.max_theta_o,
-        every: a.every,
+        every: used.every,
         max_self_view: a.max_self_view,
     };
-    let mut room = Darkroom::open(&mut photos)?;
-    let aligned = align(&mut photos, &mut room)?;
-    let mut scene = scene(&mut photos, limits)?;
-    scene.placement_px = aligned.map_or(0.0, |e| e.standard_error_px);
-    let stated = photos.manifest.mask().map(|m| photos.path(m));
-    let mask = a.mask.as_ref().map(|p| p.display().to_string()).or(stated);
-    let mask = mask.map(|path| mask_of(&mut photos, &path)).transpose()?;
-    let places = a.measurements.is_some().then(Vec::new);
+    let mask = a.mask.as_ref().map(|p| p.display().to_string());
+    let Measured { mut run, mut all, aligned, scale } = measure(&mut photos, limits, mask, a.measurements.is_some())?;
     let camera = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
-    let mut run = Run { scene, mask, room, places, seen: Vec::new(), all: None, strengths: Vec::new(), size: (0, 0) };
-    let scale = run.strengths(&mut photos)?;
-    run.observe(&mut photos)?;
-    let Some(mut all) = run.all else {
-        photos.notes.print(&photos.findings);
-        return Err(Failure::Message("found no stack with a usable pixel; expected one or more".to_owned()));
-    };
     warn(&mut photos, &run.seen);
     let scale = relative(&mut photos, scale, &mut all);
     if let (Some(path), Some(places)) = (&a.measurements, &run.places) {
@@ -178,7 +168,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     }
     let table = binned.table(&all).map_err(message)?;
     let filling = filler.fill(&mut photos, &table, answer.as_ref(), &scale)?;
-    let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
+    let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).chain(a.used.file()).collect();
     for (path, target) in a.output.iter().zip(targets) {
         let files = match (target, &answer) {
             (Target::Material, Some(answer)) => {
@@ -201,7 +191,13 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     if run.scene.kind() == "mesh" {
         settings["max_self_view"] = a.max_self_view.into();
     }
-    settings["every"] = a.every.into();
+    settings["every"] = used.every.into();
+    if let Some(lights) = used.lights {
+        settings["lights"] = lights.into();
+    }
+    if let Some(exposures) = used.exposures {
+        settings["exposures"] = exposures.into();
+    }
     settings["resolution"] = json!([binned.resolution.theta_h, binned.resolution.theta_d, binned.resolution.phi_d]);
     let shown = capture_brdf::Answer {
         object: run.scene.kind(),

@@ -31,7 +31,7 @@ pub(super) fn shots(manifest: &Manifest, shows: Shows) -> Result<Vec<Shot>, Fail
                 if wavelengths_nm.is_empty() { "none" } else { "some" },
             )));
         }
-        let light = light_of(stack);
+        let light = stack.lit_by();
         match out.iter_mut().find(|s| stack.wavelength_nm.is_some() && s.light == light) {
             Some(shot) => shot.stacks.push(stack.clone()),
             None => out.push(Shot {
@@ -46,11 +46,6 @@ pub(super) fn shots(manifest: &Manifest, shows: Shows) -> Result<Vec<Shot>, Fail
         shot.stacks.sort_by(|a, b| a.wavelength_nm.unwrap_or(0.0).total_cmp(&b.wavelength_nm.unwrap_or(0.0)));
     }
     Ok(out)
-}
-
-/// Name of the light of a stack: its own where it names none.
-fn light_of(stack: &Stack) -> &str {
-    stack.light.as_deref().unwrap_or(&stack.name)
 }
 
 impl Shot {

@@ -1,0 +1,184 @@
+//! The trade of a photographed BRDF: how many lights, exposures and pixels it takes.
+//!
+//! | knob | values |
+//! |---|---|
+//! | `lights` | all under which the object was photographed, half, a quarter |
+//! | `exposures` | all of a stack, half, one |
+//! | `every` | every pixel; every 2nd, 4th, 8th of every so many-th row |
+//!
+//! **Figures**: `f_r_median` and `f_r_p90`, median and 90th percentile of |f/f₀ − 1| over the bins and bands that both settings measured, f the
+//! robust mean of a bin; `coverage_lost`, the share of the finest setting's bins without a measurement; then each parameter of the
+//! fitted model, relative.
+//!
+//! **Reference**: the finest setting, which is no truth: all errors are relative to it. Its own is that of its standard errors: their median and
+//! 90th percentile over the bins, relative, and those of its parameters; they are on top of every error that is guaranteed. What camera, lights and
+//! object are off from what is stated hits all settings alike and does not show.
+//!
+//! The time is that of everything: reading, developing, measuring, sorting into bins, fitting.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::timing::interleaved;
+use super::{Estimate, Figure, Measure, Sweep, Trial};
+use crate::brdf::description::template::Template;
+use crate::brdf::fit::{self, Fit, Uncertainty};
+use crate::brdf::table::{Channel, Resolution};
+use crate::capture::brdf::{Binned, Observations, bin};
+
+/// Every so many-th pixel is tried.
+const EVERY: [usize; 4] = [1, 2, 4, 8];
+/// Share of the bins below the larger of the two figures of f_r.
+const HIGH: f64 = 0.9;
+
+/// The figures that do not depend on the model.
+pub static FIGURES: [Figure; 3] =
+    [Figure::relative("f_r_median"), Figure::relative("f_r_p90"), Figure::absolute("coverage_lost", "")];
+
+/// How much was used in a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Choice {
+    /// Lights.
+    pub lights: usize,
+    /// Exposures of a stack at most.
+    pub exposures: usize,
+    /// Every so many-th pixel of every so many-th row.
+    pub every: usize,
+}
+
+/// All choices of what there is, the finest first.
+#[must_use]
+pub fn choices(lights: usize, exposures: usize) -> Vec<Choice> {
+    let mut of_lights = vec![lights, lights.div_ceil(2), lights.div_ceil(4)];
+    of_lights.dedup();
+    let mut of_exposures = vec![exposures, exposures.div_ceil(2), 1];
+    of_exposures.dedup();
+    let with = |lights: usize| of_exposures.iter().map(move |exposures| (lights, *exposures));
+    let both = of_lights.into_iter().flat_map(with);
+    both.flat_map(|(lights, exposures)| EVERY.map(|every| Choice { lights, exposures, every })).collect()
+}
+
+/// A sweep, what was chosen in each of its trials, and what failed.
+#[derive(Debug)]
+pub struct CaptureSweep {
+    /// The trials.
+    pub sweep: Sweep,
+    /// Their choices.
+    pub choices: Vec<Choice>,
+    /// Choices that gave no result, and why, in words.
+    pub failed: Vec<(Choice, String)>,
+}
+
+/// What a setting gave.
+struct Outcome {
+    channels: Vec<Channel>,
+    binned: Binned,
+    fit: Fit,
+}
+
+/// Why photographs could not be traded.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaptureError {
+    /// Nothing was measured.
+    #[error("{0}")]
+    Measure(String),
+    /// No fit.
+    #[error(transparent)]
+    Fit(#[from] fit::Error),
+    /// No choices.
+    #[error("found nothing to try; expected one setting or more")]
+    NoChoice,
+}
+
+/// Tries the choices, the first of which is the finest, each timed `repeats` times. `measure` does all from the photographs to the measurements,
+/// and says the relative standard uncertainty of the variance of a pixel's area ([`Observations::samples`]).
+///
+/// # Errors
+/// [`CaptureError`] of the finest; what another choice does is in [`CaptureSweep::failed`].
+pub fn sweep(
+    choices: Vec<Choice>,
+    (template, options): (&Template, &fit::Options),
+    resolution: Resolution,
+    repeats: usize,
+    mut measure: impl FnMut(&Choice) -> Result<(Observations, f64), String>,
+) -> Result<CaptureSweep, CaptureError> {
+    let mut outcome = |choice: &Choice| -> Result<Outcome, CaptureError> {
+        let (all, pixel_variance_sd) = measure(choice).map_err(CaptureError::Measure)?;
+        let samples = all.samples(pixel_variance_sd)?;
+        let (binned, fit) = (bin(&all, resolution), fit::fit(template, &samples, options)?);
+        Ok(Outcome { channels: all.channels, binned, fit })
+    };
+    let (mut tried, mut outcomes, mut failed) = (Vec::new(), Vec::new(), Vec::new());
+    for choice in choices {
+        match outcome(&choice) {
+            Ok(found) => {
+                tried.push(choice);
+                outcomes.push(found);
+            }
+            Err(error) if tried.is_empty() => return Err(error),
+            Err(error) => failed.push((choice, error.to_string())),
+        }
+    }
+    let finest = outcomes.first().ok_or(CaptureError::NoChoice)?;
+    let parameters = finest.fit.estimates.iter().map(|e| {
+        let name = finest.fit.name_of(e);
+        let key = e.band.map_or_else(|| name.clone(), |b| format!("{name}.{}", finest.channels[b]));
+        Figure { key: Cow::Owned(key), unit: "", measure: Measure::Relative }
+    });
+    let figures: Vec<Figure> = FIGURES.iter().cloned().chain(parameters).collect();
+    let mut reference_errors = own_errors(&finest.binned).to_vec();
+    reference_errors.extend(finest.fit.estimates.iter().map(relative_error));
+    let errors: Vec<Vec<Option<Estimate>>> = outcomes.iter().map(|o| errors(finest, o)).collect();
+    let timings = interleaved(tried.len(), repeats, |i| outcome(&tried[i]))?;
+    let trials = tried.iter().zip(timings).zip(errors).map(|((choice, timing), errors)| Trial {
+        settings: [choice.lights, choice.exposures, choice.every].map(|n| n.to_string()).to_vec(),
+        offered: true,
+        timing,
+        errors,
+    });
+    let sweep = Sweep {
+        reference: "the finest setting: all lights, exposures and pixels".to_owned(),
+        knobs: vec!["lights", "exposures", "every"],
+        figures,
+        reference_errors,
+        trials: trials.collect(),
+    };
+    Ok(CaptureSweep { sweep, choices: tried, failed })
+}
+
+/// The relative standard errors of the finest setting's bins: median and [`HIGH`] percentile; its coverage is what it is.
+fn own_errors(finest: &Binned) -> [Option<f64>; 3] {
+    let each = finest.bins.iter().flat_map(|b| b.errors.iter().zip(&b.values).map(|(e, v)| (e / v).abs()));
+    let each: Vec<f64> = each.collect();
+    [percentile(each.clone(), 0.5), percentile(each, HIGH), Some(0.0)]
+}
+
+/// Standard error of a parameter, relative; none where it has none, or rests at a bound.
+fn relative_error(estimate: &fit::Estimate) -> Option<f64> {
+    let Uncertainty::Known { standard, robust } = estimate.uncertainty else { return None };
+    Some(standard.max(robust) / estimate.value.abs()).filter(|e| e.is_finite())
+}
+
+/// The errors of all figures against the finest setting.
+fn errors(finest: &Outcome, found: &Outcome) -> Vec<Option<Estimate>> {
+    let own: BTreeMap<usize, &[f64]> = found.binned.bins.iter().map(|b| (b.bin, b.values.as_slice())).collect();
+    let both = finest.binned.bins.iter().filter_map(|b| Some((&b.values, own.get(&b.bin)?)));
+    let apart = both.flat_map(|(a, b)| a.iter().zip(*b).map(|(a, b)| (b / a - 1.0).abs()));
+    let apart: Vec<f64> = apart.collect();
+    let lost = finest.binned.bins.iter().filter(|b| !own.contains_key(&b.bin)).count();
+    let figures =
+        [percentile(apart.clone(), 0.5), percentile(apart, HIGH), Some(lost as f64 / finest.binned.bins.len() as f64)];
+    let parameters = finest.fit.estimates.iter().zip(&found.fit.estimates).map(|(a, b)| {
+        let error = (b.value / a.value - 1.0).abs();
+        error.is_finite().then_some(error)
+    });
+    figures.into_iter().chain(parameters).map(|e| e.map(Estimate::exact)).collect()
+}
+
+/// The value below which a share of them lies (nearest rank), of those that are numbers; `None` of none.
+fn percentile(mut values: Vec<f64>, share: f64) -> Option<f64> {
+    values.retain(|v| v.is_finite());
+    let place = ((share * values.len() as f64).ceil() as usize).saturating_sub(1);
+    (place < values.len()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1)
+}
