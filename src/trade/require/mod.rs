@@ -1,7 +1,7 @@
 //! What an input requires of a model: the lowest rung of a ladder that carries it within an error, and the measured error of the rung
 //! below.
 //!
-//! The errors are those of the sweeps of [`crate::trade`] and of the renderer's own analysis ([`crate::render::build::analysis`]): what
+//! The errors are those of the sweeps of [`crate::trade`] and of the renderer's own analysis ([`Analysis`](crate::render::build::Analysis)): what
 //! recommends settings and what leaves things out of a scene also answers here. Rungs are in the order of the ladder of models, from spectra
 //! and bidirectional scattering of everything down to three colours and a table of one angle.
 

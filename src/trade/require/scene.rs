@@ -12,6 +12,8 @@ use crate::trade::render::{Choice, RenderError};
 
 /// Runs of each way.
 const SEEDS: u64 = 8;
+/// Samples of a meter in a run at most: both ways share their seeds, so that few tell them apart, and there are ways by the dozen.
+const SAMPLES: u64 = 8192;
 /// Errors in the sum over wavelength that are tried, from the largest on.
 const TOLERANCES: [f64; 7] = [0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5];
 /// Edges of paths that are tried.
@@ -27,7 +29,13 @@ pub fn scene(
     files: &dyn Files,
     most: f64,
 ) -> Result<Vec<Requirement>, RenderError> {
-    let own = Render { solver: Solver::Path, max_edges: None, model: Model::Minimal, ..description.render.clone() };
+    let own = Render {
+        solver: Solver::Path,
+        max_edges: None,
+        model: Model::Minimal,
+        meter_samples: description.render.meter_samples.min(SAMPLES),
+        ..description.render.clone()
+    };
     let with = |render: Render| Choice::new(text, description, files, render);
     let reference = with(own.clone())?;
     if reference.is_blind() {
