@@ -6,8 +6,9 @@
 //! | `exposures` | all of a stack, half, one |
 //! | `every` | every pixel; every 2nd, 4th, 8th of every so many-th row |
 //!
-//! **Figures**: `f_r_median` and `f_r_p90`, median and 90th percentile of |f/f₀ − 1| over the bins and bands that both settings measured, f the
-//! robust mean of a bin; `coverage_lost`, the share of the finest setting's bins without a measurement; then each parameter of the
+//! **Figures**: `f_r_median` and `f_r_p90`, median and 90th percentile of |f/f₀ − 1| over the bins and bands of the finest setting, f the robust
+//! mean of a bin; one that a setting does not measure is off by more than any number, so that a setting that loses half of the bins has no
+//! median, and one that loses a tenth no 90th percentile; `coverage_lost`, the share of the finest setting's bins without a measurement; then each parameter of the
 //! fitted model, relative.
 //!
 //! **Reference**: the finest setting, which is no truth: all errors are relative to it. Its own is that of its standard errors: their median and
@@ -163,8 +164,10 @@ fn relative_error(estimate: &fit::Estimate) -> Option<f64> {
 /// The errors of all figures against the finest setting.
 fn errors(finest: &Outcome, found: &Outcome) -> Vec<Option<Estimate>> {
     let own: BTreeMap<usize, &[f64]> = found.binned.bins.iter().map(|b| (b.bin, b.values.as_slice())).collect();
-    let both = finest.binned.bins.iter().filter_map(|b| Some((&b.values, own.get(&b.bin)?)));
-    let apart = both.flat_map(|(a, b)| a.iter().zip(*b).map(|(a, b)| (b / a - 1.0).abs()));
+    let apart = finest.binned.bins.iter().flat_map(|a| {
+        let found = own.get(&a.bin);
+        (a.values.iter().enumerate()).map(move |(band, a)| found.map_or(f64::INFINITY, |b| (b[band] / a - 1.0).abs()))
+    });
     let apart: Vec<f64> = apart.collect();
     let lost = finest.binned.bins.iter().filter(|b| !own.contains_key(&b.bin)).count();
     let figures =
@@ -176,9 +179,10 @@ fn errors(finest: &Outcome, found: &Outcome) -> Vec<Option<Estimate>> {
     figures.into_iter().chain(parameters).map(|e| e.map(Estimate::exact)).collect()
 }
 
-/// The value below which a share of them lies (nearest rank), of those that are numbers; `None` of none.
+/// The value below which a share of them lies (nearest rank); `None` where it is no finite number.
 fn percentile(mut values: Vec<f64>, share: f64) -> Option<f64> {
-    values.retain(|v| v.is_finite());
+    values.retain(|v| !v.is_nan());
     let place = ((share * values.len() as f64).ceil() as usize).saturating_sub(1);
-    (place < values.len()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1)
+    let value = (place < values.len()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1);
+    value.filter(|v| v.is_finite())
 }

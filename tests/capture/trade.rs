@@ -57,21 +57,26 @@ fn errors_are_those_between_two_runs_and_the_recommended_setting_is_taken() {
         let found = bins(folder, &["--lights", &of("lights"), "--every", &of("every"), "--exposures", "1"]);
         let both = finest.iter().filter_map(|(at, a)| Some((a, found.get(at)?)));
         let mut apart: Vec<f64> = both.flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (b / a - 1.0).abs())).collect();
+        let mut all = apart.clone();
+        all.resize(3 * finest.len(), f64::INFINITY);
         let lost = 1.0 - found.len() as f64 / finest.len() as f64;
-        for (figure, expected) in [
-            ("f_r_median", percentile(&mut apart, 0.5)),
-            ("f_r_p90", percentile(&mut apart, 0.9)),
-            ("coverage_lost", lost),
-        ] {
-            let error = number(&trial["errors"][figure]["error"]);
-            assert!((error - expected).abs() < 1e-14, "{trial}: {figure} {error}, expected {expected}");
+        for (figure, expected) in
+            [("f_r_median", percentile(&mut all, 0.5)), ("f_r_p90", percentile(&mut all, 0.9)), ("coverage_lost", lost)]
+        {
+            // What is lost is off by more than any number.
+            let error = trial["errors"][figure]["error"].as_f64().unwrap_or(f64::INFINITY);
+            assert!(
+                error == expected || (error - expected).abs() < 1e-14,
+                "{trial}: {figure} {error}, expected {expected}"
+            );
         }
         // The sphere is white, 0.5, to half a unit of 65535 where radiance is 0.08 of it: either run is off by 1e-4 at most.
         assert!(percentile(&mut apart, 1.0) < 2e-4, "{trial}");
         assert!(number(&trial["errors"]["lambert.reflectance.R"]["error"]) < 2e-4, "{trial}");
         // Never less than the finest's own standard error.
         let own = number(&result["reference_errors"]["f_r_median"]);
-        assert!(own > 0.0 && number(&trial["error_bound"]) >= own, "{trial}");
+        let bound = trial["error_bound"].as_f64().unwrap_or(f64::INFINITY);
+        assert!(own > 0.0 && bound >= own && (lost < 0.5 || bound == f64::INFINITY), "{trial}");
     }
     assert!(trials.iter().any(|t| number(&t["errors"]["coverage_lost"]["error"]) > 0.1));
     assert!(fs::read_to_string(folder.join("x.svg")).expect("written").starts_with("<svg"));

@@ -25,7 +25,7 @@ const RESOLUTION: Resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 36 
   photopic trade capture capture.toml --error 2% --settings less.toml && photopic capture brdf capture.toml --settings less.toml
 
 Errors are relative to the finest setting, which is no truth; its own standard error is on top of each that is guaranteed.
-f_r is compared in the bins that both settings measured: what fewer lights no longer measure is in coverage_lost alone, and in the parameters.")]
+f_r is compared in the bins of the finest setting: where half of them are lost there is no median, and such a setting is not recommended by it.")]
 pub(in crate::cli) struct CaptureArgs {
     /// The manifest, as for `capture brdf`.
     #[arg(value_name = "MANIFEST")]
