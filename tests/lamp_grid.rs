@@ -19,24 +19,7 @@ use photopic::render::light::goniometric::Goniometric;
 use proptest::prelude::*;
 
 fn lamp(distribution: Distribution, opening: Option<Body>) -> Luminaire {
-    Luminaire {
-        name: String::new(),
-        manufacturer: String::new(),
-        catalogue_number: String::new(),
-        kind: Kind::Luminous,
-        distribution,
-        absolute: true,
-        lamps: Vec::new(),
-        input_power_w: None,
-        declared_flux: None,
-        declared_output_ratio: None,
-        declared_downward_fraction: None,
-        opening,
-        housing: None,
-        spectrum: None,
-        angular_spectra: None,
-        keywords: Vec::new(),
-    }
+    Luminaire { opening, ..Luminaire::of(distribution) }
 }
 
 fn body(shape: Shape, length_m: f64, width_m: f64, height_m: f64) -> Body {

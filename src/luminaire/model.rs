@@ -127,3 +127,28 @@ pub struct Luminaire {
     /// Every other labelled fact of the file, in order: what a conversion may carry along.
     pub keywords: Vec<(String, String)>,
 }
+
+impl Luminaire {
+    /// A luminaire of which nothing is known but its own luminous intensities, cd.
+    #[must_use]
+    pub fn of(distribution: Distribution) -> Self {
+        Self {
+            name: String::new(),
+            manufacturer: String::new(),
+            catalogue_number: String::new(),
+            kind: Kind::Luminous,
+            distribution,
+            absolute: true,
+            lamps: Vec::new(),
+            input_power_w: None,
+            declared_flux: None,
+            declared_output_ratio: None,
+            declared_downward_fraction: None,
+            opening: None,
+            housing: None,
+            spectrum: None,
+            angular_spectra: None,
+            keywords: Vec::new(),
+        }
+    }
+}

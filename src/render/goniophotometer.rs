@@ -25,7 +25,7 @@ use super::ray::Ray;
 use super::sampler::Sampler;
 use super::scene::Scene;
 use super::steps::{StepError, angles};
-use crate::luminaire::{self, Distribution, Kind, LampSet, Luminaire, Symmetry, System};
+use crate::luminaire::{self, Distribution, LampSet, Luminaire, Symmetry, System};
 
 /// Most directions of a grid.
 const MOST_DIRECTIONS: usize = 100_000;
@@ -354,21 +354,8 @@ impl Measured {
             Distribution::new(System::TypeC, Symmetry::None, self.c_deg.clone(), self.gamma_deg.clone(), values)?;
         Ok(Luminaire {
             name: name.to_owned(),
-            manufacturer: String::new(),
-            catalogue_number: String::new(),
-            kind: Kind::Luminous,
-            distribution,
-            absolute: true,
             lamps: vec![LampSet { count: Some(1.0), ..LampSet::default() }],
-            input_power_w: None,
-            declared_flux: None,
-            declared_output_ratio: None,
-            declared_downward_fraction: None,
-            opening: None,
-            housing: None,
-            spectrum: None,
-            angular_spectra: None,
-            keywords: Vec::new(),
+            ..Luminaire::of(distribution)
         })
     }
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Check;
 use crate::luminaire::grid::{Placed, Plane, PointsAt, Receiver, Settings, illuminance};
 use crate::luminaire::placement::{Orientation, Placement};
-use crate::luminaire::{Body, Distribution, Kind, Luminaire, Shape, Symmetry, System};
+use crate::luminaire::{Body, Distribution, Luminaire, Shape, Symmetry, System};
 
 /// The flux of a lamp of one plane; NaN where the table is none.
 fn flux(vertical_deg: &[f64], values: &[f64]) -> f64 {
@@ -23,22 +23,8 @@ fn point_for_a_disc(diameters: f64) -> f64 {
     let table = Distribution::new(System::TypeC, Symmetry::Rotational, vec![0.0], gamma, cosine);
     let Ok(distribution) = table else { return f64::NAN };
     let luminaire = Luminaire {
-        name: String::new(),
-        manufacturer: String::new(),
-        catalogue_number: String::new(),
-        kind: Kind::Luminous,
-        distribution,
-        absolute: true,
-        lamps: Vec::new(),
-        input_power_w: None,
-        declared_flux: None,
-        declared_output_ratio: None,
-        declared_downward_fraction: None,
         opening: Some(Body { shape: Shape::Round, length_m: 1.0, width_m: 1.0, height_m: 0.0 }),
-        housing: None,
-        spectrum: None,
-        angular_spectra: None,
-        keywords: Vec::new(),
+        ..Luminaire::of(distribution)
     };
     let below = |near_ratio: f64| {
         let placement = Placement::new(DVec3::new(0.0, 0.0, diameters), Orientation::DOWN, 1.0).ok()?;

@@ -307,7 +307,7 @@ impl Values {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::luminaire::{Body, Kind, Shape, Symmetry, System};
+    use crate::luminaire::{Body, Shape, Symmetry, System};
     use std::f64::consts::PI;
 
     /// A round opening of luminance 1 cd/m² and diameter 0.1 m, its cosine in a table of `steps` steps.
@@ -318,24 +318,7 @@ mod tests {
         let distribution =
             Distribution::new(System::TypeC, Symmetry::Rotational, vec![0.0], gamma, values).expect("a sound table");
         let body = Body { shape: Shape::Round, length_m: 0.1, width_m: 0.1, height_m: 0.0 };
-        Luminaire {
-            name: String::new(),
-            manufacturer: String::new(),
-            catalogue_number: String::new(),
-            kind: Kind::Luminous,
-            distribution,
-            absolute: true,
-            lamps: Vec::new(),
-            input_power_w: None,
-            declared_flux: None,
-            declared_output_ratio: None,
-            declared_downward_fraction: None,
-            opening: opening.then_some(body),
-            housing: None,
-            spectrum: None,
-            angular_spectra: None,
-            keywords: Vec::new(),
-        }
+        Luminaire { opening: opening.then_some(body), ..Luminaire::of(distribution) }
     }
 
     fn errors(s: &LampSweep, key: &str, is: impl Fn(&Choice) -> bool) -> Vec<(Choice, f64)> {

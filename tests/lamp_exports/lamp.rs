@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use photopic::luminaire::{Body, Distribution, Kind, LampSet, Luminaire, Shape, Symmetry, System};
+use photopic::luminaire::{Body, Distribution, LampSet, Luminaire, Shape, Symmetry, System};
 
 /// An intensity without any symmetry, smooth over the sphere, cd.
 pub fn formula(c_deg: f64, gamma_deg: f64) -> f64 {
@@ -50,20 +50,10 @@ pub fn lamp(distribution: Distribution) -> Luminaire {
     Luminaire {
         name: "asymmetric \"Ω\" -- <lamp>\nwith a line".into(),
         manufacturer: "ours".into(),
-        catalogue_number: String::new(),
-        kind: Kind::Luminous,
-        distribution,
-        absolute: true,
         lamps: vec![LampSet::default()],
         input_power_w: Some(10.0),
-        declared_flux: None,
-        declared_output_ratio: None,
-        declared_downward_fraction: None,
         opening: Some(Body { shape: Shape::Rectangle, length_m: 0.6, width_m: 0.2, height_m: 0.0 }),
-        housing: None,
-        spectrum: None,
-        angular_spectra: None,
-        keywords: Vec::new(),
+        ..Luminaire::of(distribution)
     }
 }
 

@@ -367,7 +367,7 @@ mod tests {
     use super::*;
     use crate::luminaire::grid::{Placed, Plane, PointsAt, Receiver, Settings, illuminance};
     use crate::luminaire::placement::Orientation;
-    use crate::luminaire::{Interpolation, Kind, Luminaire};
+    use crate::luminaire::{Interpolation, Luminaire};
     use crate::math::random::Stream;
     use crate::spectrum::Grid;
 
@@ -401,24 +401,7 @@ mod tests {
     }
 
     fn luminaire(distribution: Distribution, opening: Option<Body>) -> Luminaire {
-        Luminaire {
-            name: String::new(),
-            manufacturer: String::new(),
-            catalogue_number: String::new(),
-            kind: Kind::Luminous,
-            distribution,
-            absolute: true,
-            lamps: Vec::new(),
-            input_power_w: None,
-            declared_flux: None,
-            declared_output_ratio: None,
-            declared_downward_fraction: None,
-            opening,
-            housing: None,
-            spectrum: None,
-            angular_spectra: None,
-            keywords: Vec::new(),
-        }
+        Luminaire { opening, ..Luminaire::of(distribution) }
     }
 
     /// Turned about each of its own axes, and about all.
