@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--mitsuba]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--mitsuba] [--bands]
 
 The neutral JSON scenes are written as TOML for photopic; the picture's tristimulus values are compared with the two high-sample references
 there: the mean of (x − r1)(x − r2) is an unbiased estimate of the squared error, relative to r² + (0.01 mean)². Printed are the seconds of
 the whole command, the relative error of luminance, and the seconds to an error of 1e-3 if it falls as 1/N. With --mitsuba, Mitsuba's LLVM spectral
 variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md).
+With --bands the error is that of the 30 bands of 10 nm from 400 to 700 nm instead: half the mean squared difference of two renders, relative to
+r² + (0.01 mean)² of a render of eight times the samples by photopic; printed are the median over the bands and their range.
 Exit status 2 where the scenes are not there.
 """
 
@@ -28,6 +30,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared" / "render"
 # From the references' unit to cd/m²: the observer's sum times K_m (../shared/README.md).
 CANDELA = 106.75026 * 683.002
+# Middles of bands of 10 nm.
+BANDS_NM = np.arange(405, 696, 10)
 SELLMEIER = "dielectric = {{ sellmeier = {{ b = {b}, c_um2 = {c} }} }}"
 
 
@@ -98,21 +102,21 @@ def errors(xyz, name):
     return error.mean((0, 1)), xyz.mean((0, 1)) / mean - 1
 
 
-def ours(binary, name, samples, step_nm, adaptive, solver):
+def ours(binary, name, samples, step_nm, adaptive, solver, channels=("X", "Y", "Z"), seed=0):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
         (path / "scene.toml").write_text(scene(name, step_nm, adaptive, solver))
-        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "-o", "out.txt"]
+        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "--seed", str(seed), "-o", "out.txt"]
         start = time.perf_counter()
         subprocess.run(command, cwd=folder, check=True)
         seconds = time.perf_counter() - start
         with OpenEXR.File(str(path / "view.exr"), separate_channels=True) as file:
-            channels = file.channels()
-            xyz = np.stack([channels[c].pixels for c in "XYZ"], axis=-1).astype(float)
-    return seconds, xyz / CANDELA
+            stored = file.channels()
+            pixels = np.stack([stored[c].pixels for c in channels], axis=-1).astype(float)
+    return seconds, pixels
 
 
-def mitsuba(name, samples):
+def mitsuba(name, samples, bands=False, seed=2):
     import mitsuba as mi
 
     if not mi.variant():
@@ -128,11 +132,42 @@ def mitsuba(name, samples):
 
         mi_disp.register()
         integrator = {"type": "hero", "max_depth": 12, "rr_depth": 8}
-    loaded = mi.load_dict(build(name.removesuffix("+disp"), samples, dispersive=dispersive, integrator=integrator, sampler="multijitter"))
+    description = build(name.removesuffix("+disp"), samples, dispersive=dispersive, integrator=integrator, sampler="multijitter")
+    if bands:
+        size = {k: description["sensor"]["film"][k] for k in ("width", "height", "rfilter")}
+        description["sensor"]["film"] = {"type": "specfilm", "component_format": "float32"} | size
+        for nm in BANDS_NM:
+            box = {"type": "spectrum", "value": [(float(nm) - 5, 1.0), (float(nm) + 5, 1.0)]}
+            description["sensor"]["film"][f"band_{nm}"] = box
+    loaded = mi.load_dict(description)
     np.array(mi.render(loaded, spp=samples, seed=1))
     start = time.perf_counter()
-    xyz = np.array(mi.render(loaded, spp=samples, seed=2)).astype(float)
-    return time.perf_counter() - start, xyz
+    pixels = np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
+    return time.perf_counter() - start, pixels
+
+
+def band_errors(render, reference):
+    """Seconds of a render, and the relative squared error of each band, from two renders of other seeds."""
+    (first, a), (second, b) = render(2), render(3)
+    scale = reference.mean((0, 1)) / a.mean((0, 1))
+    error = 0.5 * ((a - b) * scale) ** 2 / (reference**2 + (0.01 * reference.mean((0, 1))) ** 2)
+    return (first + second) / 2, error.mean((0, 1))
+
+
+def compare_bands(binary, name, arguments):
+    channels = [f"S0.{nm},0nm" for nm in BANDS_NM]
+    render = lambda samples, seed: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", channels, seed)
+    _, reference = render(8 * arguments.samples, 1)
+    seconds, error = band_errors(lambda seed: render(arguments.samples, seed), reference)
+    rows = [("photopic", seconds, error)]
+    if arguments.mitsuba:
+        rows.append(("mitsuba", *band_errors(lambda seed: mitsuba(name, arguments.samples, True, seed), reference)))
+    for program, seconds, error in rows:
+        to = seconds * error / 1e-3
+        print(f"{name:12} {program:13} {seconds:8.2f} {np.median(error):10.5f} {np.median(to):10.2f} {to.min():8.2f} to {to.max():.2f}", flush=True)
+    if arguments.mitsuba:
+        ratio = rows[1][1] * rows[1][2] / (rows[0][1] * rows[0][2])
+        print(f"{name:12} {'ratio':13} {'':19} {np.median(ratio):10.2f} {ratio.min():8.2f} to {ratio.max():.2f}", flush=True)
 
 
 def main():
@@ -144,19 +179,26 @@ def main():
     parser.add_argument("--even", action="store_true", help="photopic gives every pixel as many samples")
     parser.add_argument("--solvers", default="path", help="photopic's, such as path,bidirectional")
     parser.add_argument("--mitsuba", action="store_true")
+    parser.add_argument("--bands", action="store_true", help="the error of bands of 10 nm in place of luminance")
     arguments = parser.parse_args()
     if not SHARED.is_dir():
         print("skipped: ../shared/render is not here")
         return 2
     binary = str(Path(arguments.binary).resolve())
-    print(f"{'scene':12} {'program':13} {'s':>8} {'relMSE Y':>10} {'s to 1e-3':>10} {'mean Y off':>11}")
+    last = "of all bands" if arguments.bands else "mean Y off"
+    print(f"{'scene':12} {'program':13} {'s':>8} {'relMSE':>10} {'s to 1e-3':>10} {last:>11}")
     for name in arguments.scenes.split(","):
+        if arguments.bands:
+            compare_bands(binary, name, arguments)
+            continue
         run = lambda solver, name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even, solver)
         runs = [(solver, lambda solver=solver, run=run: run(solver)) for solver in arguments.solvers.split(",")]
         if arguments.mitsuba:
             runs.append(("mitsuba", lambda name=name: mitsuba(name, arguments.samples)))
         for program, run in runs:
             seconds, xyz = run()
+            if program != "mitsuba":
+                xyz /= CANDELA
             error, mean = errors(xyz, name)
             to = seconds * error[1] / 1e-3
             print(f"{name:12} {program:13} {seconds:8.2f} {error[1]:10.5f} {to:10.2f} {100 * mean[1]:10.3f} %", flush=True)

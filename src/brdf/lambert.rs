@@ -59,6 +59,10 @@ impl Brdf for Lambert {
         true
     }
 
+    fn is_diffuse(&self) -> bool {
+        true
+    }
+
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, values: &mut [f64]) {
         if incident.z <= 0.0 || outgoing.z <= 0.0 {
             return values.fill(0.0);

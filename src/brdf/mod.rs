@@ -99,6 +99,11 @@ pub trait Brdf: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether it is about the same for all pairs of directions above the horizon: there is no lobe in it.
+    fn is_diffuse(&self) -> bool {
+        false
+    }
+
     /// Whether the values bend or jump between nodes, as those of tables do: quadratures, which converge slowly then, stop at 1e-4.
     fn is_tabulated(&self) -> bool {
         false

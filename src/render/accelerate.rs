@@ -78,6 +78,12 @@ impl Surfaces {
         self.shapes[surface].surface(ray, crossing)
     }
 
+    /// Whether the box of bounded surfaces holds all there are.
+    #[must_use]
+    pub fn are_bounded(&self) -> bool {
+        self.shapes.iter().map(|shape| shape.bounds()).all(|bounds| bounds.is_finite() || bounds == Bounds::EMPTY)
+    }
+
     /// The box of all bounded surfaces.
     #[must_use]
     pub fn bounds(&self) -> Bounds {

@@ -1,12 +1,16 @@
 //! A camera's picture: radiance per band and tristimulus values, rendered row by row as whoever writes it asks for them.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::bands::Bands;
-use super::estimate::{Faults, stream};
+use super::estimate::{self, stream};
 use super::integrator::path::PathTracer;
+use super::integrator::virtual_lights::{self, VirtualLights};
 use super::light::shares::Shares;
 use super::measure::Settings;
+use super::noise::{Gathered, Noise, Together};
 use super::packets::{PacketPicture, Task};
 use super::sampler::Sampler;
 use super::scatter::{self, Scatter, Scattered};
@@ -20,25 +24,16 @@ use crate::spectrum::{Per, Quantity, SpectralUnit};
 /// One of so many samples is spent on the survey.
 const SURVEY: u64 = 16;
 
+/// Streams of another instrument are the survey's, others those of the trial of virtual lights: the picture's own numbers stay unknown.
+const SURVEYED: u64 = u32::MAX as u64;
+const TRIAL: u64 = SURVEYED - 1;
+/// The bit in which the streams of their virtual lights differ from them.
+const VIRTUAL: u64 = 1 << 30;
+
 /// Samples of a pixel that [`Film::survey`] takes in a picture of `samples` a pixel.
 #[must_use]
 pub fn survey_samples(samples: u64) -> u64 {
     samples / SURVEY
-}
-
-/// The luminance of a picture and how sure it is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Noise {
-    /// Pixels rendered.
-    pub pixels: u64,
-    /// Σ of the luminances.
-    pub luminance: f64,
-    /// Σ of the variances of the pixels' means, estimated from the scatter of their samples. Samples of a pixel are spread
-    /// evenly, which this estimate does not know: it errs to the safe side. The first pixel's has the covariances of all pixels that
-    /// packets are seen in, so that the sum over a whole picture is n² times the variance of its mean.
-    pub variance: f64,
-    /// Samples left out of the means.
-    pub faults: Faults,
 }
 
 /// A picture that is rendered when it is read.
@@ -64,6 +59,10 @@ pub struct Film<'a, F> {
     noise: Noise,
     /// Samples of each pixel, row by row, where they are not all the same.
     shares: Option<Vec<u32>>,
+    /// What virtual lights would be made of.
+    source: Option<virtual_lights::Source>,
+    /// Whether they are used.
+    virtual_lights: bool,
     /// Where packets start, if they help.
     lights: Option<Shares>,
     /// What they found, once they were sent.
@@ -113,26 +112,44 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             progress,
             noise: Noise::default(),
             shares: None,
+            source: (settings.virtual_lights != Some(false) && !settings.packets)
+                .then(|| virtual_lights::Source::of(scene, &settings.limits))
+                .flatten(),
+            virtual_lights: settings.virtual_lights == Some(true),
             lights: settings.packets.then(|| Shares::new(scene.lights(), scene.bands().len())),
             packets: None,
         }
     }
 
-    /// Finds out with a sixteenth of the samples where the picture is noisy, and shares the samples out among the pixels accordingly (as
-    /// many in all): those of large relative error σ/(L + ε) get more.
+    /// Finds out whether virtual lights pay, where that was not said ([`Settings::virtual_lights`]). An adaptive picture is then looked at
+    /// with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
+    /// all): those of large relative error σ/(L + ε) get more.
     ///
-    /// The samples that it took are thrown away, so that no pixel's number of samples depends on their values, which would be a bias.
-    /// With fewer than sixteen samples nothing is done.
-    pub fn survey(&mut self) {
+    /// The samples that it took are thrown away, so that nothing that is done depends on the values of those that count, which would be a
+    /// bias. With fewer than sixteen samples nothing is found out.
+    pub fn survey(&mut self, adaptive: bool) {
         self.send();
         if self.samples < SURVEY {
+            return;
+        }
+        if self.settings.virtual_lights.is_none() && self.source.is_some() {
+            self.virtual_lights = self.gains();
+        }
+        if !adaptive {
             return;
         }
         let (width, height) = (self.description.width, self.description.height);
         let mut scatter = Scatter::new(width, height);
         let rows: Vec<Vec<Scattered>> = (0..height)
             .into_par_iter()
-            .map_init(|| self.tracer(), |tracer, y| self.surveyed(tracer, y, self.samples / SURVEY))
+            .map_init(
+                || self.tracer(self.virtual_lights),
+                |tracer, y| {
+                    let row = self.surveyed(tracer, y, self.samples / SURVEY, SURVEYED);
+                    (self.progress)(width as u64 * (self.samples / SURVEY));
+                    row
+                },
+            )
             .collect();
         rows.iter().enumerate().for_each(|(y, row)| scatter.add(y, row));
         self.shares = Some(scatter.samples(self.samples));
@@ -159,33 +176,96 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         self.noise
     }
 
-    fn tracer(&self) -> PathTracer<'_> {
-        let tracer = PathTracer::new(self.scene, self.settings.limits, &self.settings.heroes);
-        match &self.lights {
-            Some(shares) => tracer.beside(shares),
-            None => tracer,
+    /// Whether virtual lights make less noise than paths alone with the same number of searches along rays, which is the same on every machine; by
+    /// a few samples of every eighth row.
+    fn gains(&self) -> bool {
+        /// Samples of a pixel.
+        const SAMPLES: u64 = 4;
+        let (width, height) = (self.description.width, self.description.height);
+        let cost = |virtual_lights: bool| {
+            let rows: Vec<usize> = (0..height).step_by(2 * scatter::BLOCK).collect();
+            let rows: Vec<_> = (rows.into_par_iter())
+                .map(|y| {
+                    let mut tracer = self.tracer(virtual_lights);
+                    let row = self.surveyed(&mut tracer, y, SAMPLES, TRIAL);
+                    (y, row, tracer.effort())
+                })
+                .collect();
+            let mut scatter = Scatter::new(width, height);
+            rows.iter().for_each(|(y, row, _)| scatter.add(*y, row));
+            rows.iter().map(|row| row.2).sum::<f64>() * scatter.noise().powi(2)
+        };
+        cost(true) < cost(false)
+    }
+
+    fn tracer(&self, virtual_lights: bool) -> PathTracer<'_> {
+        let (limits, heroes) = (&self.settings.limits, &self.settings.heroes);
+        let tracer = PathTracer::new(self.scene, *limits, heroes);
+        match (&self.lights, &self.source) {
+            (Some(shares), _) => tracer.beside(shares),
+            (None, Some(source)) if virtual_lights => {
+                tracer.with(VirtualLights::new(self.scene, limits, heroes, source))
+            }
+            (None, _) => tracer,
         }
     }
 
-    /// Luminances of some samples of each pixel of a row, by block.
-    fn surveyed(&self, tracer: &mut PathTracer<'_>, y: usize, samples: u64) -> Vec<Scattered> {
+    /// Luminances of some samples of each pixel of a row, by block; `streams` tells their random numbers from others.
+    fn surveyed(&self, tracer: &mut PathTracer<'_>, y: usize, samples: u64, streams: u64) -> Vec<Scattered> {
         let width = self.description.width;
         let mut row = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
-        for x in 0..width {
-            // Streams of another instrument: the picture's own numbers stay unknown.
-            let pixel = stream(self.instrument + u64::from(u32::MAX), y * width + x);
-            let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
-            let packets = self.packets.as_ref();
-            let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
-            for index in 0..samples {
-                sampler.start(index);
-                let sample = self.sample(tracer, x, y, &mut sampler);
+        let packets = self.packets.as_ref();
+        self.columns(
+            tracer,
+            y,
+            (0..width, streams),
+            |_| samples,
+            |x, _, sample| {
+                let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
                 let luminance = sample.map_or(0.0, |s| s.iter().zip(self.tristimulus).map(|(s, t)| s * t[1]).sum());
                 row[x / scatter::BLOCK].add(luminance, known);
+            },
+        );
+        row
+    }
+
+    /// Takes the samples of some pixels of a row, with virtual lights the first of all pixels, then the second of all. `number` is how many
+    /// a pixel of the row has; `take` is told the pixel's column, the sample's stream and index, and what it is, if the lens shows anything there.
+    fn columns(
+        &self,
+        tracer: &mut PathTracer<'_>,
+        y: usize,
+        (columns, streams): (Range<usize>, u64),
+        number: impl Fn(usize) -> u64,
+        mut take: impl FnMut(usize, (u64, u64), Option<&[f64]>),
+    ) {
+        let width = self.description.width;
+        let stream = |x: usize| stream(self.instrument + streams, y * width + x);
+        if tracer.virtual_lights().is_none() {
+            for x in columns {
+                let mut sampler = Sampler::new(self.settings.seed, stream(x), 0);
+                for index in 0..number(x) {
+                    sampler.start(index);
+                    take(x, (stream(x), index), self.sample(tracer, x, y, &mut sampler));
+                }
+            }
+            return;
+        }
+        // The sets are those of the whole row, whichever part of it is rendered.
+        let numbers: Vec<u64> = (0..width).map(number).collect();
+        let mut samplers: Vec<Sampler> =
+            columns.clone().map(|x| Sampler::new(self.settings.seed, stream(x), 0)).collect();
+        let mut sets =
+            virtual_lights::Sets::new(self.settings.seed, estimate::stream(self.instrument + (streams ^ VIRTUAL), y));
+        for index in 0..numbers.iter().copied().max().unwrap_or(0) {
+            if let Some(lights) = tracer.virtual_lights() {
+                sets.next(lights, numbers.iter().filter(|n| **n > index).count());
+            }
+            for (x, sampler) in columns.clone().zip(&mut samplers).filter(|(x, _)| numbers[*x] > index) {
+                sampler.start(index);
+                take(x, (stream(x), index), self.sample(tracer, x, y, sampler));
             }
         }
-        (self.progress)(width as u64 * samples);
-        row
     }
 
     /// One sample of a pixel's radiance per band; `None` where the lens shows nothing.
@@ -203,51 +283,6 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         Some(tracer.picture_radiance(ray, picture_sr, sampler))
     }
 
-    /// Renders one pixel: means per band into `bands`; what it adds to the noise.
-    fn pixel(&self, tracer: &mut PathTracer<'_>, x: usize, y: usize, bands: &mut [f64]) -> Noise {
-        bands.fill(0.0);
-        let pixel = stream(self.instrument, y * self.description.width + x);
-        let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
-        let mut faults = Faults::default();
-        // Welford's running mean and sum of squared deviations of the luminance.
-        let (mut mean, mut squares, mut count) = (0.0, 0.0, 0.0);
-        let own = |shares: &Vec<u32>| u64::from(shares[y * self.description.width + x]);
-        let samples = self.shares.as_ref().map_or(self.samples, own);
-        for index in 0..samples {
-            sampler.start(index);
-            let mut luminance = 0.0;
-            if let Some(sample) = self.sample(tracer, x, y, &mut sampler) {
-                if !faults.accept(sample, pixel, index) {
-                    continue;
-                }
-                for ((b, s), t) in bands.iter_mut().zip(sample).zip(self.tristimulus) {
-                    *b += s;
-                    luminance += s * t[1];
-                }
-            }
-            count += 1.0;
-            let deviation = luminance - mean;
-            mean += deviation / count;
-            squares += deviation * (luminance - mean);
-        }
-        if count > 0.0 {
-            bands.iter_mut().for_each(|b| *b /= count);
-        }
-        let mut variance = if count > 1.0 { squares / (count - 1.0) / count } else { 0.0 };
-        if let Some(packets) = &self.packets {
-            let pixel = y * self.description.width + x;
-            packets.add_to(pixel, bands);
-            let (luminance, own) = packets.luminance(pixel, self.tristimulus);
-            mean += luminance;
-            variance += own;
-            if (x, y) == (0, 0) {
-                faults.append(packets.faults());
-                variance += packets.covariance(self.tristimulus);
-            }
-        }
-        Noise { pixels: 1, luminance: mean, variance, faults }
-    }
-
     /// Renders whole rows: the noise and the samples of all channels, one behind the other, of each. What [`Film::noise`] says stays.
     #[must_use]
     pub fn rows(&mut self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
@@ -256,7 +291,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let channels: Vec<usize> = (0..this.description.channels.len()).collect();
         rows.par_iter()
             .map_init(
-                || this.tracer(),
+                || this.tracer(this.virtual_lights),
                 |tracer, &y| {
                     let region = Region::rows(&this.description, y, 1);
                     let mut samples = vec![0.0; region.width * channels.len()];
@@ -268,11 +303,32 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     }
 
     fn row(&self, tracer: &mut PathTracer<'_>, region: Region, y: usize, channels: &[usize], out: &mut [f32]) -> Noise {
+        let (width, bands) = (self.description.width, self.tristimulus.len());
+        let mut pixels = vec![Gathered::default(); region.width];
+        let mut sums = vec![0.0; region.width * bands];
+        let number = |x: usize| self.shares.as_ref().map_or(self.samples, |shares| u64::from(shares[y * width + x]));
+        let mut together = Together::default();
+        self.columns(tracer, y, (region.x..region.x + region.width, 0), number, |x, (stream, index), sample| {
+            let pixel = &mut pixels[x - region.x];
+            let mut luminance = 0.0;
+            if let Some(sample) = sample {
+                if !pixel.faults.accept(sample, stream, index) {
+                    return;
+                }
+                for ((b, s), t) in sums[(x - region.x) * bands..].iter_mut().zip(sample).zip(self.tristimulus) {
+                    *b += s;
+                    luminance += s * t[1];
+                }
+            }
+            together.add(index, pixel, luminance, number(x));
+            pixel.add(luminance);
+        });
         let mut values = vec![0.0; self.description.channels.len()];
         let mut noise = Noise::default();
-        for column in 0..region.width {
-            let (bands, xyz) = values.split_at_mut(self.tristimulus.len());
-            noise.append(&self.pixel(tracer, region.x + column, y, bands));
+        for (column, (gathered, sums)) in pixels.iter().zip(sums.chunks_exact(bands)).enumerate() {
+            let (bands, xyz) = values.split_at_mut(bands);
+            bands.iter_mut().zip(sums).for_each(|(b, sum)| *b = sum / gathered.count.max(1.0));
+            noise.append(&self.pixel(gathered, y * width + region.x + column, bands));
             for (component, sum) in xyz.iter_mut().enumerate() {
                 *sum = bands.iter().zip(self.tristimulus).map(|(b, t)| b * t[component]).sum();
             }
@@ -282,26 +338,28 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 out[place * region.width + column] = sample;
             }
         }
+        if tracer.virtual_lights().is_some() {
+            noise.variance = together.variance();
+        }
         (self.progress)(region.width as u64 * self.samples);
         noise
     }
-}
 
-impl Noise {
-    /// Adds that of the rows below.
-    pub fn append(&mut self, later: &Self) {
-        self.pixels += later.pixels;
-        self.luminance += later.luminance;
-        self.variance += later.variance;
-        self.faults.append(&later.faults);
-    }
-
-    /// Root of the mean variance of the pixels over their mean luminance: the relative noise of the picture.
-    #[must_use]
-    pub fn relative(&self) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
-        let n = self.pixels.max(1) as f64;
-        if self.luminance > 0.0 { (self.variance / n).sqrt() / (self.luminance / n) } else { 0.0 }
+    /// What a pixel adds to the noise; adds to its bands what packets found there.
+    fn pixel(&self, gathered: &Gathered, pixel: usize, bands: &mut [f64]) -> Noise {
+        let mut noise =
+            Noise { pixels: 1, luminance: gathered.mean, variance: gathered.variance(), faults: gathered.faults };
+        if let Some(packets) = &self.packets {
+            packets.add_to(pixel, bands);
+            let (luminance, own) = packets.luminance(pixel, self.tristimulus);
+            noise.luminance += luminance;
+            noise.variance += own;
+            if pixel == 0 {
+                noise.faults.append(packets.faults());
+                noise.variance += packets.covariance(self.tristimulus);
+            }
+        }
+        noise
     }
 }
 
@@ -320,7 +378,10 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
         let rows: Vec<Noise> = out
             .par_chunks_mut(region.width * channels.len())
             .enumerate()
-            .map_init(|| this.tracer(), |tracer, (row, out)| this.row(tracer, region, region.y + row, channels, out))
+            .map_init(
+                || this.tracer(this.virtual_lights),
+                |tracer, (row, out)| this.row(tracer, region, region.y + row, channels, out),
+            )
             .collect();
         rows.iter().for_each(|row| self.noise.append(row));
         Ok(())

@@ -47,6 +47,9 @@ pub struct Settings {
     /// Whether packets from the lights help paths from the camera in making pictures
     /// ([`bidirectional`](super::integrator::bidirectional)).
     pub packets: bool,
+    /// Whether virtual lights stand for light between diffuse surfaces in pictures ([`virtual_lights`](super::integrator::virtual_lights));
+    /// without a word, where they make less noise in the same time.
+    pub virtual_lights: Option<bool>,
 }
 
 impl Settings {
@@ -55,7 +58,7 @@ impl Settings {
     pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
         let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
-        Self { seed, limits, heroes, packets: false }
+        Self { seed, limits, heroes, packets: false, virtual_lights: None }
     }
 
     /// The same with bands chosen one half alike, one half in proportion to `weights`: what each adds to the reading that counts. Where

@@ -27,7 +27,7 @@
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
 //! | [`radiosity`] | the light of diffuse scenes, without random numbers |
-//! | [`estimate`], [`measure`] | readings with their standard errors |
+//! | [`estimate`], [`measure`], [`noise`] | readings with their standard errors, and the noise of pictures |
 //! | [`audit`] | where the energy goes, and what readings lose |
 //! | [`gonioreflectometer`] | the BRDF of a sample |
 //! | [`goniophotometer`] | the intensities of all that shines, and its flux |
@@ -51,6 +51,7 @@ pub mod light;
 pub mod material;
 pub mod measure;
 pub mod mesh;
+pub mod noise;
 mod packets;
 pub mod placed;
 pub mod radiosity;

@@ -60,8 +60,15 @@ impl Scatter {
         blocks.iter_mut().zip(row).for_each(|(block, more)| block.append(1.0, *more));
     }
 
-    /// Samples of each pixel, row by row, of which there are `mean` on average (but for rounding to whole ones).
-    pub(super) fn samples(&self, mean: u64) -> Vec<u32> {
+    /// The mean over the blocks that have samples of σ/(L + L̄/100).
+    pub(super) fn noise(&self) -> f64 {
+        let seen: Vec<usize> = (0..self.blocks.len()).filter(|b| self.blocks[*b].count > 0.0).collect();
+        let deserved = self.deserved();
+        seen.iter().map(|b| deserved[*b]).sum::<f64>() / seen.len().max(1) as f64
+    }
+
+    /// σ/(L + L̄/100) of every block.
+    fn deserved(&self) -> Vec<f64> {
         let columns = self.width.div_ceil(BLOCK);
         let rows = self.height.div_ceil(BLOCK);
         let mut all = Scattered::default();
@@ -80,7 +87,13 @@ impl Scatter {
             let luminance = average + near.known / near.count + dark;
             if luminance > 0.0 { deviation / luminance } else { 0.0 }
         };
-        let blocks: Vec<f64> = (0..rows * columns).map(|b| deserved(b % columns, b / columns)).collect();
+        (0..rows * columns).map(|b| deserved(b % columns, b / columns)).collect()
+    }
+
+    /// Samples of each pixel, row by row, of which there are `mean` on average (but for rounding to whole ones).
+    pub(super) fn samples(&self, mean: u64) -> Vec<u32> {
+        let columns = self.width.div_ceil(BLOCK);
+        let blocks = self.deserved();
         let average = blocks.iter().sum::<f64>() / blocks.len() as f64;
         let share = |b: f64| if average > 0.0 { LEAST + (1.0 - LEAST) * b / average } else { 1.0 };
         let of = |x: usize, y: usize| share(blocks[y / BLOCK * columns + x / BLOCK]);

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::estimate::{Faults, REPLICATES, Replicate};
-use super::film::Noise;
+use super::noise::Noise;
 
 /// The first bytes of a file.
 const MAGIC: &[u8] = b"photopic render 1\n";

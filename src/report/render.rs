@@ -10,6 +10,7 @@ use crate::render::estimate::Figure;
 use crate::render::goniophotometer::Measured;
 use crate::render::gonioreflectometer;
 use crate::render::integrator::path::Follow;
+use crate::render::integrator::virtual_lights::Source;
 use crate::render::radiosity::Summary;
 use crate::render::reading::{Points, Reading, Spectral};
 use crate::units::significant;
@@ -53,6 +54,12 @@ pub fn model(built: &Built) -> Value {
         left_out.push("polarisation");
     }
     let analysis = &built.analysis;
+    let suited = !built.settings.packets && Source::of(&built.scene, limits).is_some();
+    let virtual_lights = match (suited, built.settings.virtual_lights) {
+        (false, _) | (_, Some(false)) => "in no picture",
+        (true, Some(true)) => "in every picture",
+        (true, None) => "in every picture that has less noise by them in the same time",
+    };
     let paths = match (analysis.fluorescent.is_empty(), analysis.dispersive.is_empty()) {
         (true, true) => "every path carries all of them",
         (true, false) => {
@@ -78,6 +85,7 @@ pub fn model(built: &Built) -> Value {
             "advised": analysis.caustics,
             "because": analysis.caustics_because,
         },
+        "virtual_lights": virtual_lights,
         "materials": {
             "dispersive": analysis.dispersive,
             "fluorescent": analysis.fluorescent,

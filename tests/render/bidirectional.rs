@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use photopic::render::build::{Built, Kind, NoFiles, build};
 use photopic::render::description::Description;
-use photopic::render::film::{Film, Noise};
+use photopic::render::film::Film;
+use photopic::render::noise::Noise;
 use photopic::render::sensor::camera::Camera;
 
 use crate::cli::{json, photopic};

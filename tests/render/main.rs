@@ -20,3 +20,4 @@ mod scenes;
 mod shapes;
 mod slab;
 mod trade;
+mod virtual_lights;

@@ -14,7 +14,8 @@ use crate::image::format::exr;
 use crate::image::source::Source;
 use crate::render::build::Built;
 use crate::render::description::sensor::Camera as Described;
-use crate::render::film::{self, Film, Noise};
+use crate::render::film::{self, Film};
+use crate::render::noise::Noise;
 use crate::render::radiosity::gather::Gatherer;
 use crate::render::radiosity::picture::Picture;
 use crate::render::sensor::camera::Camera;
@@ -120,11 +121,7 @@ impl<'a> Job<'a> {
             &self.built.quantities.tristimulus,
             |samples| progress.inc(samples),
         );
-        let survey = |film: &mut Film<_>| {
-            if self.adaptive {
-                film.survey();
-            }
-        };
+        let survey = |film: &mut Film<_>| film.survey(self.adaptive);
         let noise = match state {
             None => {
                 survey(&mut film);

@@ -10,8 +10,9 @@ use crate::image::error::Error as ImageError;
 use crate::image::source::{self, Region, Source};
 use crate::render::build::{Built, Kind};
 use crate::render::estimate::REPLICATES;
-use crate::render::film::{Film, Noise};
+use crate::render::film::Film;
 use crate::render::measure::Board;
+use crate::render::noise::Noise;
 use crate::render::spool::{Extent, Header, Share, Spool, Task};
 
 /// Meters are stored this often; rows of pictures as they are done.

@@ -215,7 +215,8 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let incomplete = builder.meshes.into_inner().incomplete;
     let packets = render.solver == Solver::Bidirectional;
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
-    let settings = Settings { packets, ..settings };
+    let virtual_lights = if render.model == Model::Full { Some(false) } else { render.virtual_lights };
+    let settings = Settings { packets, virtual_lights, ..settings };
     Ok(Built {
         scene,
         instruments,

@@ -70,6 +70,8 @@ pub struct Render {
     pub samples: u64,
     /// Whether the samples of a picture go where it is noisy, so many a pixel on average; else every pixel gets as many.
     pub adaptive: bool,
+    /// Whether places that packets from the lights came to light diffuse surfaces in pictures; without it where that makes less noise.
+    pub virtual_lights: Option<bool>,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,
@@ -98,6 +100,7 @@ impl Default for Render {
             solver: Solver::Path,
             samples: 64,
             adaptive: true,
+            virtual_lights: None,
             meter_samples: 1 << 18,
             seed: 0,
             max_edges: None,

@@ -9,5 +9,7 @@
 pub mod bidirectional;
 pub mod frame;
 pub mod light;
+pub mod packet;
 pub mod path;
 pub mod polarisation;
+pub mod virtual_lights;

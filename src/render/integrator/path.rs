@@ -16,6 +16,7 @@ use glam::DVec3;
 
 use super::frame::Frame;
 use super::polarisation::Polarisation;
+use super::virtual_lights::{DRAWS, VirtualLights};
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
 use crate::render::material::{Material, Transport};
@@ -79,6 +80,10 @@ pub struct PathTracer<'a> {
     polarisation: Polarisation,
     /// Where packets of flux compete ([`super::bidirectional`]): the probabilities with which they start from the lights.
     packets: Option<&'a Shares>,
+    /// What lights diffuse surfaces in place of paths from one to another.
+    virtual_lights: Option<VirtualLights<'a>>,
+    /// Searches along a ray so far.
+    searches: u64,
     /// The solid angle that the picture would have if all of its pixels were as large as the one that the path starts from, sr; 0 where no
     /// packet competes.
     picture_sr: f64,
@@ -94,6 +99,8 @@ struct Edge {
     from: DVec3,
     /// The density with which packets find the path up to here, over that of the path's own way: without what draws them at the light.
     rival: f64,
+    /// |cosθ| at its start where that is a diffuse surface that virtual lights were drawn for, else 0.
+    shared: f64,
 }
 
 impl<'a> PathTracer<'a> {
@@ -118,6 +125,8 @@ impl<'a> PathTracer<'a> {
             seen: None,
             polarisation: Polarisation::new(n),
             packets: None,
+            virtual_lights: None,
+            searches: 0,
             picture_sr: 0.0,
         }
     }
@@ -126,6 +135,25 @@ impl<'a> PathTracer<'a> {
     #[must_use]
     pub fn beside(self, packets: &'a Shares) -> Self {
         Self { packets: Some(packets), ..self }
+    }
+
+    /// The same, with virtual lights, whose sets the caller renews: see [`super::virtual_lights`].
+    #[must_use]
+    pub fn with(self, virtual_lights: VirtualLights<'a>) -> Self {
+        Self { virtual_lights: Some(virtual_lights), ..self }
+    }
+
+    /// The virtual lights that it was given.
+    pub fn virtual_lights(&mut self) -> Option<&mut VirtualLights<'a>> {
+        self.virtual_lights.as_mut()
+    }
+
+    /// The work done so far, in searches along a ray.
+    #[must_use]
+    pub fn effort(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a measure of work")]
+        let searches = self.searches as f64;
+        searches + self.virtual_lights.as_ref().map_or(0.0, VirtualLights::effort)
     }
 
     /// One sample of the radiance along a ray, per band.
@@ -138,7 +166,7 @@ impl<'a> PathTracer<'a> {
     pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
         self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
-        self.follow(Edge { ray, pdf: None, from: ray.origin, rival: 0.0 }, sampler);
+        self.follow(Edge { ray, pdf: None, from: ray.origin, rival: 0.0, shared: 0.0 }, sampler);
         &self.radiance
     }
 
@@ -166,7 +194,7 @@ impl<'a> PathTracer<'a> {
         let ray = Ray { origin: point.origin_towards(direction), direction };
         let pdf = response.seeks_lights().then(|| response.pdf(local));
         self.picture_sr = 0.0;
-        self.follow(Edge { ray, pdf, from: point.position, rival: 0.0 }, sampler);
+        self.follow(Edge { ray, pdf, from: point.position, rival: 0.0, shared: 0.0 }, sampler);
         &self.radiance
     }
 
@@ -201,6 +229,7 @@ impl<'a> PathTracer<'a> {
     fn follow(&mut self, start: Edge, sampler: &mut Sampler) {
         let mut edge = start;
         for count in 1.. {
+            self.searches += 1;
             let Some((surface, crossing)) = self.scene.surfaces().closest(&edge.ray, f64::INFINITY) else {
                 self.escape(&edge);
                 return;
@@ -276,6 +305,10 @@ impl<'a> PathTracer<'a> {
         if material.splits() {
             self.split();
         }
+        let shares = !self.split && material.is_diffuse() && self.virtual_lights.is_some();
+        if shares && self.is_found(edge, point, sampler) {
+            return None;
+        }
         let hero = self.hero;
         let seek = !material.is_delta();
         let rival = match count {
@@ -295,6 +328,9 @@ impl<'a> PathTracer<'a> {
                 [if competes { pdf } else { 0.0 }, rival * sent(incident)]
             };
             self.light(point, u, function, &frame);
+        }
+        if shares {
+            self.virtual_light(material, point, outgoing, &frame, count, u[3]);
         }
         if self.limits.follow == Follow::Nothing {
             return None;
@@ -341,7 +377,8 @@ impl<'a> PathTracer<'a> {
             }
             false => rival * sent(drawn.direction) / drawn.pdf,
         };
-        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position, rival })
+        let shared = if shares { drawn.direction.z.abs() } else { 0.0 };
+        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position, rival, shared })
     }
 
     /// The density with which packets find a path whose last edge leads from `from` to a light, over that of the path's own way, given
@@ -382,6 +419,7 @@ impl<'a> PathTracer<'a> {
         let ray = Ray { origin: point.origin_towards(towards.direction), direction: towards.direction };
         let ignored = self.scene.surface_of_light(index);
         let casts_shadows = self.limits.shadows && light.casts_shadows();
+        self.searches += u64::from(casts_shadows);
         if casts_shadows && self.scene.surfaces().is_occluded(&ray, towards.distance, ignored) {
             return;
         }
@@ -391,6 +429,47 @@ impl<'a> PathTracer<'a> {
         let weight = power_heuristic(own / pdf, rival / pdf) / pdf;
         multiply(&mut self.value, &self.arriving);
         self.add(weight);
+    }
+
+    /// Whether what the path would find from here on is left to virtual lights that were drawn where its last edge starts.
+    fn is_found(&self, edge: &Edge, point: &SurfacePoint, sampler: &mut Sampler) -> bool {
+        let Some(lights) = self.virtual_lights.as_ref().filter(|_| edge.shared > 0.0) else { return false };
+        let cosines = edge.shared * edge.ray.direction.dot(point.normal).abs();
+        let share = lights.share(cosines / edge.from.distance_squared(point.position));
+        share == 1.0 || share > 0.0 && sampler.one() < share
+    }
+
+    /// Adds the light of some virtual lights, drawn at random by one number.
+    fn virtual_light(
+        &mut self,
+        material: &dyn Material,
+        point: &SurfacePoint,
+        outgoing: DVec3,
+        frame: &Frame,
+        count: u32,
+        u: f64,
+    ) {
+        let from = point.position;
+        let normal = if outgoing.z < 0.0 { -point.shading } else { point.shading };
+        let edges = self.limits.max_edges.map_or(u32::MAX, |max| max.saturating_sub(count + 1));
+        if !self.virtual_lights.as_mut().is_some_and(|lights| lights.weigh(from, normal, edges)) {
+            return;
+        }
+        for draw in 0..DRAWS {
+            let Some(lights) = &self.virtual_lights else { return };
+            let Some(drawn) = lights.draw(from, normal, (draw, u)) else { continue };
+            let local = frame.local(drawn.direction);
+            if drawn.direction.dot(point.normal) * local.z <= 0.0 {
+                continue;
+            }
+            self.searches += 1;
+            if !lights.arriving(point, &drawn, &mut self.arriving) {
+                continue;
+            }
+            material.evaluate(local, outgoing, Transport::Radiance, &mut self.value);
+            multiply(&mut self.value, &self.arriving);
+            self.add(drawn.weight * local.z.abs());
+        }
     }
 
     /// Adds throughput · value · weight: band by band, or of all bands of the light to the one that the instrument sees.

@@ -140,6 +140,11 @@ pub trait Material: std::fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether it scatters into all directions of the side that is lit about alike, the same for all wavelengths.
+    fn is_diffuse(&self) -> bool {
+        false
+    }
+
     /// Whether light can pass to the other side.
     fn is_transmissive(&self) -> bool {
         false

@@ -93,6 +93,10 @@ impl Material for Opaque {
         self.brdf.has_delta()
     }
 
+    fn is_diffuse(&self) -> bool {
+        self.brdf.is_diffuse()
+    }
+
     fn is_delta(&self) -> bool {
         self.brdf.is_delta()
     }

@@ -182,6 +182,10 @@ impl Material for Textured {
         true
     }
 
+    fn is_diffuse(&self) -> bool {
+        self.base.is_diffuse()
+    }
+
     fn nature(&self) -> Nature {
         self.base.nature()
     }

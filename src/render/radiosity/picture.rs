@@ -7,7 +7,7 @@ use super::lights::spread;
 use crate::image::description::Description;
 use crate::image::error::Error;
 use crate::image::source::{self, Region, Source};
-use crate::render::film::Noise;
+use crate::render::noise::Noise;
 use crate::render::sensor::camera::Camera;
 
 /// Rays of a pixel at most: they only smooth edges.

@@ -1,0 +1,306 @@
+//! Virtual lights: places that packets of flux came to, which light the diffuse surfaces that paths from the camera come to.
+//!
+//! A path that leaves a diffuse surface into any direction seldom finds what lights it where that is one bright patch across a dark room.
+//! Packets from the lights know where it is bright. A few are sent for every set of samples; every diffuse place that one comes to is a
+//! virtual light of that set, and a sample draws [`DRAWS`] of them, in proportion to what they would bring if nothing were in between:
+//!
+//! ```text
+//! L = Σ f_x f_y Φ_y min(G, b) V / (p_y N)        G = |cosθ_x| |cosθ_y| / d²,   p_y ∝ S_y min(G, b)
+//! ```
+//!
+//! N packets; Φ: the flux per band that comes to y; S: what goes on of it, in one figure; V: 1 where nothing is in between. What is left
+//! out, G − min(G, b), is that of places nearby, which paths find well: a path that went from x to y goes on with the probability
+//! 1 − min(1, b/G), and everywhere else ends there. Together they are the whole for any b, without bias: the sum is linear in the packets.
+//!
+//! Only edges between two diffuse surfaces ([`Material::is_diffuse`](crate::render::material::Material::is_diffuse)) of which a path
+//! carries all bands are shared out that way. Light that comes straight from a lamp is left to the path.
+//!
+//! Every sample of a pixel has a set of its own, which it shares with the other pixels of a row: the scatter of a pixel's samples tells its
+//! error, but the errors of the pixels of a row are not independent.
+//!
+//! References: A. Keller, *Instant Radiosity*, SIGGRAPH 1997; T. Kollig & A. Keller, *Illumination in the Presence of Weak Singularities*,
+//! Monte Carlo and Quasi-Monte Carlo Methods 2004 (the bound, and what is beyond it).
+
+use glam::DVec3;
+
+use super::frame::Frame;
+use super::packet::{self, Packet};
+use super::path::{Follow, Limits};
+use crate::render::light::shares::Shares;
+use crate::render::material::Transport;
+use crate::render::ray::{Ray, SurfacePoint};
+use crate::render::sampler::Sampler;
+use crate::render::scene::Scene;
+
+/// Virtual lights that are drawn for a vertex.
+pub const DRAWS: usize = 2;
+/// Pixels for which one packet is sent.
+const PIXELS: u64 = 4;
+/// Most packets of a set: every sample weighs all that they bring.
+const MOST: u64 = 64;
+/// So many of them are weighed in the time of a search along a ray, about.
+const WEIGHED: f64 = 100.0;
+/// b N⁻¹ in terms of the area of what is lit: so near an edge is as likely to be found by a path as by one of the packets, about.
+const NEARNESS: f64 = 2.0;
+
+/// Where packets start, and how near virtual lights may be, for a scene that they suit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    shares: Shares,
+    /// Area of the diffuse surfaces, m².
+    area: f64,
+}
+
+impl Source {
+    /// Of a scene; `None` where virtual lights cannot stand for all light between its diffuse surfaces, or there are no two.
+    #[must_use]
+    pub fn of(scene: &Scene, limits: &Limits) -> Option<Self> {
+        // Packets of a light at infinity come through the sphere of what is bounded.
+        let suits = limits.follow == Follow::All
+            && limits.shadows
+            && limits.max_edges.is_none_or(|max| max > 2)
+            && scene.surfaces().are_bounded()
+            && scene.lights().iter().all(|light| light.emits_what_arrives());
+        let shapes = scene.surfaces().shapes().iter().enumerate();
+        let area: f64 = shapes.filter(|(i, _)| scene.material(*i).is_diffuse()).map(|(_, s)| s.area()).sum();
+        let source = Self { shares: Shares::new(scene.lights(), scene.bands().len()), area };
+        (suits && area > 0.0 && area.is_finite()).then_some(source)
+    }
+}
+
+/// The virtual lights of a set of samples, and what makes them.
+#[derive(Debug)]
+pub struct VirtualLights<'a> {
+    scene: &'a Scene,
+    source: &'a Source,
+    heroes: &'a [f64],
+    /// The longest path of a packet, edges.
+    most_edges: Option<u32>,
+    packet: Packet<'a>,
+    /// The greatest G that they are answerable for, 1/m².
+    bound: f64,
+    /// x, y, z of their places, then of the normals on the sides that are lit.
+    coordinates: [Vec<f64>; 6],
+    /// What goes on from each, in one figure.
+    strengths: Vec<f64>,
+    /// Edges of the path from the lamp to each.
+    edges: Vec<u32>,
+    surroundings: Vec<Surrounding>,
+    /// The flux that comes to each, per band, over the number of packets.
+    fluxes: Vec<f64>,
+    value: Vec<f64>,
+    sums: Vec<f64>,
+    /// Work done for them, in searches along a ray.
+    effort: f64,
+}
+
+/// The sets of one row of pixels, one for each number of a sample.
+#[derive(Debug)]
+pub struct Sets {
+    sampler: Sampler,
+    /// Packets sent so far: those of all sets are spread evenly together.
+    packets: u64,
+}
+
+impl Sets {
+    /// None yet; `stream` names their random numbers in the run `seed`.
+    #[must_use]
+    pub fn new(seed: u64, stream: u64) -> Self {
+        Self { sampler: Sampler::new(seed, stream, 0), packets: 0 }
+    }
+
+    /// Makes the next set, for so many pixels: a packet for every four of them, at most 64, which cost less than the pixels' samples.
+    pub fn next(&mut self, lights: &mut VirtualLights<'_>, pixels: usize) {
+        let packets = (pixels as u64 / PIXELS).clamp(1, MOST);
+        lights.renew(packets, self.packets, &mut self.sampler);
+        self.packets += packets;
+    }
+}
+
+/// What else is known of a virtual light.
+#[derive(Debug, Clone, Copy)]
+struct Surrounding {
+    point: SurfacePoint,
+    frame: Frame,
+    /// Where the flux came from, in the frame.
+    arriving: DVec3,
+    surface: usize,
+}
+
+/// A virtual light that was drawn for a point.
+#[derive(Debug, Clone, Copy)]
+pub struct Drawn {
+    index: usize,
+    /// Unit vector from the point.
+    pub direction: DVec3,
+    /// |cosθ_y|/d² · min(1, b/G) over the expected number of its draws.
+    pub weight: f64,
+}
+
+impl<'a> VirtualLights<'a> {
+    /// None yet; `heroes` as for [`super::path::PathTracer::new`].
+    #[must_use]
+    pub fn new(scene: &'a Scene, limits: &Limits, heroes: &'a [f64], source: &'a Source) -> Self {
+        Self {
+            scene,
+            source,
+            heroes,
+            most_edges: limits.max_edges.map(|max| max.saturating_sub(2)),
+            packet: Packet::new(scene, limits.polarisation, heroes, &source.shares),
+            bound: 0.0,
+            coordinates: Default::default(),
+            strengths: Vec::new(),
+            edges: Vec::new(),
+            surroundings: Vec::new(),
+            fluxes: Vec::new(),
+            value: vec![0.0; scene.bands().len()],
+            sums: Vec::new(),
+            effort: 0.0,
+        }
+    }
+
+    /// The work done for them so far, in searches along a ray.
+    #[must_use]
+    pub fn effort(&self) -> f64 {
+        self.effort
+    }
+
+    /// min(1, b/G): the share that virtual lights have in an edge between two diffuse surfaces.
+    #[must_use]
+    pub fn share(&self, g: f64) -> f64 {
+        if g > self.bound { self.bound / g } else { 1.0 }
+    }
+
+    /// Puts others in their place, those of so many packets, the first of which is sample `first` of the sampler.
+    fn renew(&mut self, packets: u64, first: u64, sampler: &mut Sampler) {
+        self.coordinates.iter_mut().for_each(Vec::clear);
+        self.strengths.clear();
+        self.edges.clear();
+        self.surroundings.clear();
+        self.fluxes.clear();
+        #[expect(clippy::cast_precision_loss, reason = "a number of packets")]
+        let number = packets as f64;
+        self.bound = NEARNESS * number / self.source.area;
+        for index in first..first + packets {
+            sampler.start(index);
+            let Some(mut ray) = self.packet.emit(sampler) else { continue };
+            for edges in 1.. {
+                if self.most_edges.is_some_and(|most| edges > most) {
+                    break;
+                }
+                self.effort += 1.0;
+                let Some(vertex) = self.packet.arrive(&ray, sampler) else { break };
+                if vertex.material.is_diffuse() {
+                    let up = DVec3::new(0.0, 0.0, vertex.arriving.z.signum());
+                    vertex.material.evaluate(vertex.arriving, up, Transport::Radiance, &mut self.value);
+                    let strength = strength(self.packet.flux(), &self.value, self.heroes);
+                    if strength > 0.0 {
+                        let (place, normal) = (vertex.point.position, vertex.point.normal);
+                        let normal = if vertex.back.dot(normal) < 0.0 { -normal } else { normal };
+                        let own = [place.x, place.y, place.z, normal.x, normal.y, normal.z];
+                        self.coordinates.iter_mut().zip(own).for_each(|(all, x)| all.push(x));
+                        self.strengths.push(strength);
+                        self.edges.push(edges);
+                        let packet::Vertex { point, frame, arriving, surface, .. } = vertex;
+                        self.surroundings.push(Surrounding { point, frame, arriving, surface });
+                        self.fluxes.extend(self.packet.flux().iter().map(|flux| flux / number));
+                    }
+                }
+                let u = sampler.four();
+                match self.packet.scatter(&vertex, u) {
+                    Some(next) => ray = next,
+                    None => break,
+                }
+            }
+        }
+    }
+
+    /// Weighs them for a point, `normal` on the side that is seen: those at the end of paths of no more than `edges` edges. Whether there
+    /// is one.
+    pub fn weigh(&mut self, from: DVec3, normal: DVec3, edges: u32) -> bool {
+        let bound = self.bound;
+        let [x, y, z, nx, ny, nz] = &self.coordinates;
+        let n = self.strengths.len();
+        self.effort += n as f64 / WEIGHED;
+        let (x, y, z, nx, ny, nz) = (&x[..n], &y[..n], &z[..n], &nx[..n], &ny[..n], &nz[..n]);
+        self.sums.clear();
+        self.sums.extend((0..n).map(|i| {
+            let (dx, dy, dz) = (x[i] - from.x, y[i] - from.y, z[i] - from.z);
+            let squared = dx * dx + dy * dy + dz * dz;
+            let here = (dx * normal.x + dy * normal.y + dz * normal.z).max(0.0);
+            let there = (-dx * nx[i] - dy * ny[i] - dz * nz[i]).max(0.0);
+            // At the point itself: 0/0, which min makes the bound; it is drawn and brings nothing.
+            self.strengths[i] * (here * there / (squared * squared)).min(bound)
+        }));
+        if self.most_edges.is_some_and(|most| edges < most) {
+            self.sums
+                .iter_mut()
+                .zip(&self.edges)
+                .filter(|(_, own)| **own > edges)
+                .for_each(|(weight, _)| *weight = 0.0);
+        }
+        let mut sum = 0.0;
+        self.sums.iter_mut().for_each(|weight| {
+            sum += *weight;
+            *weight = sum;
+        });
+        sum > 0.0 && sum < f64::INFINITY
+    }
+
+    /// One of those that were weighed for a point and a normal: the draw number `draw` of [`DRAWS`], all by one uniform number.
+    #[must_use]
+    pub fn draw(&self, from: DVec3, normal: DVec3, (draw, u): (usize, f64)) -> Option<Drawn> {
+        let draws = DRAWS as f64;
+        let u = (draw as f64 + u) / draws;
+        let total = *self.sums.last()?;
+        let index =
+            self.sums.partition_point(|end| *end <= u * total).min(self.sums.partition_point(|end| *end < total));
+        let below = if index == 0 { 0.0 } else { self.sums[index - 1] };
+        let probability = (self.sums[index] - below) / total;
+        let way = self.surroundings[index].point.position - from;
+        let distance = way.length();
+        let direction = way / distance;
+        let own = DVec3::new(self.coordinates[3][index], self.coordinates[4][index], self.coordinates[5][index]);
+        let per_area = -direction.dot(own) / (distance * distance);
+        let weight = per_area * self.share(direction.dot(normal) * per_area) / (probability * draws);
+        // Nothing comes from a place at the point itself.
+        (weight > 0.0 && weight.is_finite()).then_some(Drawn { index, direction, weight })
+    }
+
+    /// Writes f_y Φ_y, W/(m² sr nm) times m²; `false` where it is not seen from the point.
+    pub fn arriving(&self, point: &SurfacePoint, drawn: &Drawn, value: &mut [f64]) -> bool {
+        let Surrounding { point: place, frame, arriving, surface } = &self.surroundings[drawn.index];
+        let back = -drawn.direction;
+        let outgoing = frame.local(back);
+        // A shading normal can send light through the surface: no light goes there.
+        if outgoing.z * back.dot(place.normal) <= 0.0 {
+            return false;
+        }
+        let origin = point.origin_towards(drawn.direction);
+        let way = place.origin_towards(back) - origin;
+        let distance = way.length();
+        let direction = way / distance;
+        // So near that the two origins have passed each other: nothing is in between.
+        let touches = way.dot(drawn.direction) <= 0.0;
+        if !touches && self.scene.surfaces().is_occluded(&Ray { origin, direction }, distance, None) {
+            return false;
+        }
+        self.scene.material(*surface).evaluate(*arriving, outgoing, Transport::Radiance, value);
+        let fluxes = &self.fluxes[drawn.index * value.len()..];
+        value.iter_mut().zip(fluxes).for_each(|(v, f)| *v *= f);
+        true
+    }
+}
+
+/// Σ p |Φ f| over the bands: p is the probability of a band, given by running sums, which no band is without.
+fn strength(flux: &[f64], function: &[f64], heroes: &[f64]) -> f64 {
+    let mut below = 0.0;
+    let bands = flux.iter().zip(function).zip(heroes);
+    bands
+        .map(|((flux, function), hero)| {
+            let p = hero - below;
+            below = *hero;
+            p * (flux * function).abs()
+        })
+        .sum()
+}

@@ -1,0 +1,254 @@
+//! Virtual lights beside paths: a closed form that they have to meet in every pixel, the path tracer's pictures in every band, honest errors,
+//! the same bits however a picture is asked for.
+
+use std::f64::consts::PI;
+
+use photopic::image::source::{Region, Source};
+use photopic::render::build::{Built, Kind, NoFiles, build};
+use photopic::render::description::Description;
+use photopic::render::film::Film;
+use photopic::render::integrator::virtual_lights;
+use photopic::render::measure::Settings;
+use photopic::render::noise::Noise;
+use photopic::render::sensor::camera::Camera;
+
+fn built(text: &str) -> Built {
+    let description = Description::parse(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    build(text, &description, &NoFiles).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn camera(built: &Built) -> &Camera {
+    let found = built.instruments.iter().find_map(|i| match &i.kind {
+        Kind::Camera(camera) => Some(camera),
+        _ => None,
+    });
+    found.expect("a camera")
+}
+
+fn settings(built: &Built, seed: u64, virtual_lights: Option<bool>) -> Settings {
+    Settings { seed, virtual_lights, ..built.settings.clone() }
+}
+
+/// All channels of all pixels, row by row, and the noise.
+fn picture(built: &Built, settings: &Settings, samples: u64) -> (Vec<f32>, Noise) {
+    let camera = camera(built);
+    let mut film = Film::new(&built.scene, camera, settings, 0, samples, &built.quantities.tristimulus, |_| ());
+    film.survey(false);
+    let rows: Vec<usize> = (0..camera.height() as usize).collect();
+    let (mut noise, mut pixels) = (Noise::default(), Vec::new());
+    for (row, samples) in film.rows(&rows) {
+        noise.append(&row);
+        pixels.extend(samples);
+    }
+    (pixels, noise)
+}
+
+/// Mean and standard error of independent numbers.
+fn figure(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt())
+}
+
+/// Means over blocks of the picture of each channel: `blocks` along each side.
+fn blocks(pixels: &[f32], camera: &Camera, blocks: usize) -> Vec<f64> {
+    let (width, height) = (camera.width() as usize, camera.height() as usize);
+    let channels = pixels.len() / width / height;
+    let mut sums = vec![0.0; channels * blocks * blocks];
+    for (place, row) in pixels.chunks_exact(width).enumerate() {
+        let (y, channel) = (place / channels, place % channels);
+        for (x, value) in row.iter().enumerate() {
+            sums[(channel * blocks + y * blocks / height) * blocks + x * blocks / width] += f64::from(*value);
+        }
+    }
+    sums
+}
+
+const ROOM: &str = r#"
+[[material]]
+name = "white"
+reflectance = 0.7
+[[material]]
+name = "red"
+reflectance = [[400, 0.1], [600, 0.2], [650, 0.8], [830, 0.8]]
+[[shape]]
+material = "white"
+rectangle = { corner = [-2, -2, 0], edges = [[4, 0, 0], [0, 4, 0]] }
+[[shape]]
+material = "red"
+rectangle = { corner = [-2, 2, 0], edges = [[4, 0, 0], [0, 0, 3]] }
+[[shape]]
+material = "white"
+rectangle = { corner = [-2, -2, 0], edges = [[0, 4, 0], [0, 0, 3]] }
+"#;
+const LAMP: &str = r#"
+[[shape]]
+material = "white"
+emission = { radiance = "1000 cd/m2", spectrum = "D65" }
+rectangle = { corner = [-1, -1, 2.5], edges = [[0, 2, 0], [2, 0, 0]] }
+"#;
+const VIEW: &str = r#"
+[[sensor]]
+name = "view"
+camera = { at = [0.1, -2.6, 1.3], look_at = [0, 0, 0.5], resolution = [12, 10], field_of_view = "45 deg" }
+"#;
+
+/// A point in the middle of a white sphere lights all of it alike: E = Φ/(4πR²(1 − ρ)), and every place has the radiance ρE/π, whichever
+/// part of it comes straight, by virtual lights, or from nearby. With four edges E = Φ/(4πR²)(1 + ρ + ρ²).
+#[test]
+fn every_pixel_of_an_integrating_sphere_is_as_bright() {
+    for (edges, series) in [("", 1.0 / (1.0 - 0.8)), ("max_edges = 4", 1.0 + 0.8 + 0.64), ("max_edges = 3", 1.8)] {
+        let text = format!(
+            r#"
+[render]
+wavelength_step_nm = 10
+{edges}
+[[material]]
+name = "white"
+reflectance = 0.8
+[[shape]]
+material = "white"
+sphere = {{ centre = [0, 0, 0], radius = "0.5 m" }}
+[[light]]
+spectrum = [[360, 1], [830, 1]]
+point = {{ at = [0, 0, 0], flux = "1000 lm" }}
+[[sensor]]
+name = "view"
+camera = {{ at = [0.2, 0.1, 0.05], look_at = [0, 0.3, 0], resolution = [24, 6], projection = "equirectangular" }}
+"#
+        );
+        let built = built(&text);
+        let expected = 0.8 / PI * 1000.0 / PI * series;
+        let seeds: Vec<Vec<f32>> =
+            (0..24).map(|seed| picture(&built, &settings(&built, seed, Some(true)), 64).0).collect();
+        let (width, height) = (24, 6);
+        let channels = seeds[0].len() / width / height;
+        let mut squares = 0.0;
+        for y in 0..height {
+            for x in 0..width {
+                let place = (y * channels + channels - 2) * width + x;
+                let (mean, error) = figure(&seeds.iter().map(|s| f64::from(s[place])).collect::<Vec<_>>());
+                assert!(error < 0.03 * expected, "{mean} ± {error}");
+                // With three edges all that is drawn is the same: what is left is the rounding of pixels to f32, 2⁻²⁴ of them, and of the band sum.
+                let off = (mean - expected) / error.max(1e-6 * expected);
+                // Of 23 degrees of freedom: beyond 5.5 once in 80 000, and there are 432.
+                assert!(off.abs() < 5.5, "{x}, {y}: {mean} ± {error}, {expected}");
+                squares += off * off;
+            }
+        }
+        // Student's t of 23 degrees of freedom has the variance 23/21; the pixels of a row are correlated, and the rows are six.
+        assert!(squares / 144.0 < 2.0, "{squares}");
+    }
+}
+
+/// What virtual lights show is what paths find, in every band and part of the picture: textures, smooth normals, mirrors and glass between
+/// diffuse surfaces, dispersion, fluorescence, skies and sun; by the scatter over seeds.
+#[test]
+fn pictures_are_those_of_the_path_tracer() {
+    let ball = |material: &str| {
+        format!(
+            "{material}\n[[shape]]\nmaterial = \"ball\"\nsphere = {{ centre = [0, 0.3, 0.5], radius = \"0.5 m\" }}\n"
+        )
+    };
+    let more = [
+        (
+            "block",
+            "[[shape]]\nmaterial = \"white\"\nbox = { from = [-0.5, 0, 0], to = [0.5, 0.6, 0.9] }\n".to_owned(),
+            "",
+        ),
+        ("no more than four edges", ball("[[material]]\nname = \"ball\"\nreflectance = 0.5"), "max_edges = 4"),
+        ("rough", ball("[[material]]\nname = \"ball\"\nbrdf = \"oren-nayar(reflectance=0.6, sigma_deg=30)\""), ""),
+        (
+            "texture",
+            ball(
+                "[[material]]\nname = \"ball\"\nreflectance = 0.9\ncheckerboard = { even = 0.9, odd = 0.1, fields = [4, 2] }",
+            ),
+            "",
+        ),
+        ("gold", ball("[[material]]\nname = \"ball\"\nmetal = { medium = \"Au\", alpha = 0.2 }"), ""),
+        ("mirror", ball("[[material]]\nname = \"ball\"\nmetal = { medium = \"Ag\" }"), ""),
+        ("flint", ball("[[material]]\nname = \"ball\"\ndielectric = { medium = \"SF10\" }"), ""),
+        (
+            "dye",
+            ball(
+                "[[material]]\nname = \"ball\"\ndye = { reflectance = 0.3, absorption = [[400, 0.6], [480, 0.6], [520, 0], [830, 0]], emission = [[500, 0], [540, 1], [620, 0]], quantum_yield = 0.9 }",
+            ),
+            "",
+        ),
+    ];
+    let lamps = [
+        LAMP.to_owned(),
+        "[[light]]\nspectrum = \"A\"\nspot = { at = [1, -1, 2.5], aim = [0.7, -0.5, 1.5], half_angle = \"30 deg\", intensity = \"1000 cd\" }\n".to_owned(),
+        "[[light]]\nsky = { type = 12, horizontal = \"10000 lx\" }\n[[light]]\nspectrum = \"D65\"\ndistant = { from = [1, -1, 1], irradiance = \"5000 lx\" }\n".to_owned(),
+    ];
+    for (number, (name, shapes, limit)) in more.iter().enumerate() {
+        // Caustics of a spot are no path's to find: balls that throw some are lit by the lamp with an extent.
+        let kinds: &[usize] = if number < 4 { &[0, 1, 2] } else { &[0] };
+        for lamp in kinds {
+            let text = format!("[render]\nwavelength_step_nm = 60\n{limit}\n{ROOM}{shapes}{}{VIEW}", lamps[*lamp]);
+            let built = built(&text);
+            let parts = |virtual_lights, first: u64| -> Vec<Vec<f64>> {
+                (first..first + 16)
+                    .map(|seed| {
+                        let settings = settings(&built, seed, Some(virtual_lights));
+                        blocks(&picture(&built, &settings, 64).0, camera(&built), 2)
+                    })
+                    .collect()
+            };
+            let (with, without) = (parts(true, 0), parts(false, 100));
+            for part in 0..with[0].len() {
+                let of = |all: &[Vec<f64>]| figure(&all.iter().map(|p| p[part]).collect::<Vec<_>>());
+                let ((a, da), (b, db)) = (of(&with), of(&without));
+                // Of about 30 degrees of freedom: beyond 5 once in 40 000, and there are 700.
+                assert!((a - b).abs() <= 5.0 * da.hypot(db), "{name}, lamp {lamp}, {part}: {a} ± {da}, {b} ± {db}");
+            }
+        }
+    }
+}
+
+/// The standard error of a picture's mean, to which all pixels of a row contribute together: the scatter over seeds.
+#[test]
+fn the_error_of_the_mean_is_what_it_scatters() {
+    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{LAMP}{VIEW}"));
+    let all: Vec<Noise> = (0..64).map(|seed| picture(&built, &settings(&built, seed, Some(true)), 32).1).collect();
+    let (_, error) = figure(&all.iter().map(|noise| noise.luminance).collect::<Vec<_>>());
+    let scatter = error * 8.0;
+    let stated = (all.iter().map(|noise| noise.variance).sum::<f64>() / 64.0).sqrt();
+    // χ² of 63 degrees of freedom: within a factor of 1.4 all but once in 10 000; samples are spread evenly, which errs to the safe side.
+    assert!(scatter < 1.4 * stated, "{scatter} {stated}");
+    assert!(stated < 5.0 * scatter, "{scatter} {stated}");
+}
+
+#[test]
+fn a_part_of_a_picture_is_that_of_the_whole() {
+    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{LAMP}{VIEW}"));
+    let settings = settings(&built, 3, None);
+    let mut film = Film::new(&built.scene, camera(&built), &settings, 0, 20, &built.quantities.tristimulus, |_| ());
+    film.survey(true);
+    let mut read = |x, y, width, height| {
+        let mut out = vec![0.0; width * height];
+        film.read(Region { x, y, width, height }, &[0], &mut out).expect("rows");
+        out
+    };
+    let (whole, part) = (read(0, 0, 12, 10), read(5, 3, 4, 2));
+    for y in 0..2 {
+        assert_eq!(part[y * 4..][..4], whole[(y + 3) * 12 + 5..][..4]);
+    }
+}
+
+/// They are taken where they pay, and left where they cannot stand for all light between diffuse surfaces.
+#[test]
+fn scenes_that_they_suit_are_told_from_others() {
+    let suits = |text: &str| {
+        let built = built(text);
+        virtual_lights::Source::of(&built.scene, &built.settings.limits).is_some()
+    };
+    assert!(suits(&format!("{ROOM}{LAMP}{VIEW}")));
+    assert!(!suits(&format!("[render]\nmax_edges = 2\n{ROOM}{LAMP}{VIEW}")));
+    assert!(!suits(&format!("[render]\nsolver = \"whitted\"\n{ROOM}{LAMP}{VIEW}")));
+    // Packets of the sky come to what is bounded alone.
+    let ground = "[[shape]]\nmaterial = \"white\"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n";
+    assert!(!suits(&format!("{ROOM}{LAMP}{ground}{VIEW}")));
+    let mirrors = "[[material]]\nname = \"mirror\"\nmetal = { medium = \"Ag\" }\n[[shape]]\nmaterial = \"mirror\"\nsphere = { centre = [0, 0, 0], radius = \"1 m\" }\n";
+    assert!(!suits(&format!("{mirrors}{VIEW}")));
+}
