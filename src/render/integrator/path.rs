@@ -4,8 +4,11 @@
 //! ```text
 //! L ≈ Σ_k T_k [ Σ_s w_s f_s L_s |cosθ| / p_s ],    T_k = Π f_s |cosθ| / (p q)
 //! w_s = p_s² / Σ p²        power heuristic of multiple importance sampling
-//! q = min(1, max_b T_b)    probability of going on (Russian roulette)
+//! q = min(1, n² max_b T_b)    probability of going on (Russian roulette)
 //! ```
+//!
+//! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
+//! the path leaves the glass and says nothing about what the path is worth.
 //!
 //! With [`Follow::Specular`] it is the ray tracing of T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23 (1980).
 //!
@@ -94,6 +97,15 @@ struct Edge {
     from: DVec3,
     /// The density with which packets find the path up to here, over that of the path's own way: without what draws them at the light.
     rival: f64,
+    /// n² of the medium that it is in, over that where the path began.
+    index_squared: f64,
+}
+
+impl Edge {
+    /// The first of a path.
+    fn first(ray: Ray, pdf: Option<f64>, from: DVec3) -> Self {
+        Self { ray, pdf, from, rival: 0.0, index_squared: 1.0 }
+    }
 }
 
 impl<'a> PathTracer<'a> {
@@ -138,7 +150,7 @@ impl<'a> PathTracer<'a> {
     pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
         self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
-        self.follow(Edge { ray, pdf: None, from: ray.origin, rival: 0.0 }, sampler);
+        self.follow(Edge::first(ray, None, ray.origin), sampler);
         &self.radiance
     }
 
@@ -166,7 +178,7 @@ impl<'a> PathTracer<'a> {
         let ray = Ray { origin: point.origin_towards(direction), direction };
         let pdf = response.seeks_lights().then(|| response.pdf(local));
         self.picture_sr = 0.0;
-        self.follow(Edge { ray, pdf, from: point.position, rival: 0.0 }, sampler);
+        self.follow(Edge::first(ray, pdf, point.position), sampler);
         &self.radiance
     }
 
@@ -319,7 +331,8 @@ impl<'a> PathTracer<'a> {
         if drawn.split {
             self.split();
         }
-        let strength = self.throughput.iter().copied().fold(0.0, f64::max);
+        let index_squared = edge.index_squared * drawn.eta * drawn.eta;
+        let strength = index_squared * self.throughput.iter().copied().fold(0.0, f64::max);
         if count >= self.limits.roulette_from && strength < 1.0 {
             if u3 >= strength {
                 return None;
@@ -341,7 +354,8 @@ impl<'a> PathTracer<'a> {
             }
             false => rival * sent(drawn.direction) / drawn.pdf,
         };
-        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position, rival })
+        let pdf = (seek && !drawn.delta).then_some(drawn.pdf);
+        Some(Edge { ray, pdf, from: point.position, rival, index_squared })
     }
 
     /// The density with which packets find a path whose last edge leads from `from` to a light, over that of the path's own way, given
