@@ -293,6 +293,7 @@ impl Builder<'_> {
         g: &DescribedGonioreflectometer,
         span: &Range<usize>,
     ) -> Result<Gonioreflectometer, Error> {
+        self.ends(g.file.as_deref(), ["csv", "binary"], span)?;
         let degrees = |a: &Angle| a.0.to_degrees();
         let azimuths = g.phi_i.as_ref().map_or(vec![0.0], |all| all.iter().map(degrees).collect());
         let incident = g.theta_i.iter().flat_map(|theta| azimuths.iter().map(|phi| [degrees(theta), *phi])).collect();

@@ -152,7 +152,7 @@ pub struct Gonioreflectometer {
     /// Between azimuths of reflection; 10° without it.
     #[serde(default)]
     pub phi_step: Option<Angle>,
-    /// BRDF table to write (CSV).
+    /// BRDF table to write: `.csv`, or `.binary` (MERL).
     #[serde(default)]
     pub file: Option<String>,
 }
