@@ -23,7 +23,7 @@ pub fn model(built: &Built) -> Value {
         _ if built.radiosity.is_some() => ("radiosity", "all light, between diffuse patches, without random numbers"),
         _ if !limits.shadows => ("preview", "direct light without shadows; no measurement"),
         Follow::All if built.settings.packets => {
-            ("bidirectional", "all light, direct and reflected; pictures by paths from the camera and from the lights")
+            ("bidirectional", "all light, direct and reflected; by paths from the instruments and from the lights")
         }
         Follow::All => ("path", "all light, direct and reflected"),
         Follow::Specular => ("whitted", "direct light and its reflections in mirrors and glass"),
@@ -38,7 +38,7 @@ pub fn model(built: &Built) -> Value {
     }
     if built.analysis.caustics_missed && limits.follow == Follow::All {
         left_out.push(if built.settings.packets {
-            "light of one direction that polished surfaces throw on meters"
+            "light of one direction that polished surfaces throw on meters at a point"
         } else {
             "light of one direction that polished surfaces throw on others"
         });
