@@ -176,7 +176,7 @@ fn grid(p: &Points) -> Value {
     let values = || p.figures.iter().map(|f| f.value);
     json!({
         "points": p.counts,
-        "size_m": p.edges.map(glam::DVec3::length),
+        "size_m": p.map.size_m(),
         "minimum": values().fold(f64::INFINITY, f64::min),
         "maximum": values().fold(f64::NEG_INFINITY, f64::max),
         "values": rows(|f| f.value),
