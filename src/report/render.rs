@@ -49,6 +49,9 @@ pub fn model(built: &Built) -> Value {
     if !built.analysis.dark_lights.is_empty() {
         left_out.push("lights of no flux");
     }
+    if !built.analysis.out_of_reach.is_empty() {
+        left_out.push("lights that reach no surface and no instrument");
+    }
     if built.analysis.polished_surfaces > 0 && !built.analysis.polarisation {
         left_out.push("polarisation");
     }
@@ -86,6 +89,7 @@ pub fn model(built: &Built) -> Value {
         "lights": {
             "in_closed_form": analysis.closed_form_lights,
             "without_flux": analysis.dark_lights,
+            "out_of_reach": analysis.out_of_reach,
         },
         "wavelengths": {
             "count": bands.len(),
@@ -439,6 +443,9 @@ pub fn contents_text(built: &Built) -> String {
     }
     for light in &analysis.dark_lights {
         let _ = writeln!(out, "light   {light}: left out, it has no flux");
+    }
+    for light in &analysis.out_of_reach {
+        let _ = writeln!(out, "light   {light}: left out, it reaches no surface and no instrument");
     }
     out
 }

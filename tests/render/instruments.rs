@@ -376,3 +376,56 @@ illuminance = { grid = { on = "ball", points = [10, 6], isolux = "ball.png", csv
     }
     assert!(folder.path().join("column.svg").exists() && folder.path().join("ball.png").exists());
 }
+
+/// A lamp on the floor that shines down, a spot that looks away and a lamp behind the meter's back light nothing: they are left out, and named;
+/// with `--model full` they are there, and the reading is the same.
+#[test]
+fn lights_that_reach_nothing_are_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[[material]]
+name = "grey"
+reflectance = 0.5
+[[shape]]
+name = "floor"
+material = "grey"
+rectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }
+[[shape]]
+name = "away"
+emission = { radiance = "100 cd/m2" }
+rectangle = { corner = [-1, -1, 3], edges = [[2, 0, 0], [0, 2, 0]] }
+[[shape]]
+name = "down"
+emission = { radiance = "100 cd/m2" }
+rectangle = { corner = [-0.5, -0.5, 2.5], edges = [[0, 1, 0], [1, 0, 0]] }
+[[light]]
+name = "sky beam"
+spot = { at = [0, 0, 4], aim = [0, 0, 9], intensity = "1000 cd", half_angle = "30 deg" }
+[[light]]
+name = "lamp"
+point = { at = [0, 0, 2], flux = "100 lm" }
+[[sensor]]
+name = "floor"
+illuminance = { at = [0.2, 0, 0] }
+"#;
+    std::fs::write(folder.path().join("scene.toml"), text).expect("a scene");
+    let run = |extent: &str| {
+        let mut command = photopic();
+        command.current_dir(folder.path()).args(["render", "scene.toml", "--json", "--packets", "0"]);
+        let output = command.args(["--meter-samples", "8192", "--model", extent]).output().expect("it runs");
+        let out: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        out["results"][0].clone()
+    };
+    let (minimal, full) = (run("minimal"), run("full"));
+    assert_eq!(minimal["model"]["lights"]["out_of_reach"], serde_json::json!(["sky beam", "away"]));
+    assert_eq!(full["model"]["lights"]["out_of_reach"], serde_json::json!([]));
+    let [a, b] = [&minimal, &full].map(|out| &out["sensors"][0]);
+    let error = number(&a["standard_error"]).hypot(number(&b["standard_error"]));
+    let difference = number(&a["value"]) - number(&b["value"]);
+    // The choice of wavelengths is good to 0.001.
+    assert!(difference.abs() < 4.5 * error + 1e-3 * number(&b["value"]), "{a} {b}");
+    // Seen by a camera from above, the lamp that faces away matters.
+    let above = "[[sensor]]\nname = \"view\"\ncamera = { at = [0, 0, 5], look_at = [0, 0, 0], up = [0, 1, 0], resolution = [2, 2] }\n";
+    std::fs::write(folder.path().join("scene.toml"), format!("{text}{above}")).expect("a scene");
+    assert_eq!(run("minimal")["model"]["lights"]["out_of_reach"], serde_json::json!([]));
+}
