@@ -7,7 +7,9 @@ use crate::luminaire::grid::{self, Illuminance, Placed, Settings};
 use crate::luminaire::placement::{Orientation, Placement};
 use crate::luminaire::{Body, Kind, Luminaire, Shape};
 use crate::math::contour::contours;
+use crate::render::light_map::LightMap;
 use crate::render::reading::Points;
+use crate::render::shape::chart::Chart;
 use crate::units::significant;
 
 /// Unit of the values of a kind of luminaire.
@@ -84,9 +86,16 @@ pub fn isolux_panel(
 #[must_use]
 pub fn light_map_panel(title: &str, points: &Points, unit: &str, figures: &str) -> IsoluxPanel {
     let [m, n] = points.counts;
-    let lengths = points.edges.map(DVec3::length);
-    let axes = [points.edges[0] / lengths[0], points.edges[1] / lengths[1]];
-    let origin = axes.map(|axis| along(axis, points.corner));
+    let lengths = points.map.size_m();
+    let (origin, axes) = match points.map {
+        LightMap::Flat { corner, edges } => {
+            let axes = [edges[0] / lengths[0], edges[1] / lengths[1]];
+            let names = [axis_name(axes[0], "first edge"), axis_name(axes[1], "second edge")];
+            (axes.map(|axis| along(axis, corner)), names)
+        }
+        LightMap::Round(Chart::Sphere { .. }) => ([0.0; 2], ["around [m]", "height [m]"].map(str::to_owned)),
+        LightMap::Round(_) => ([0.0; 2], ["around [m]", "along the axis [m]"].map(str::to_owned)),
+    };
     let places = |count: usize, side: usize| -> Vec<f64> {
         #[expect(clippy::cast_precision_loss, reason = "numbers of points")]
         let at = |i: usize| origin[side] + lengths[side] * (i as f64 + 0.5) / count as f64;
@@ -104,7 +113,7 @@ pub fn light_map_panel(title: &str, points: &Points, unit: &str, figures: &str) 
     IsoluxPanel {
         title: title.to_owned(),
         figures: figures.to_owned(),
-        axes: [axis_name(axes[0], "first edge"), axis_name(axes[1], "second edge")],
+        axes,
         extent_m: [(origin[0], origin[0] + lengths[0]), (origin[1], origin[1] + lengths[1])],
         columns_m,
         rows_m,

@@ -6,8 +6,10 @@ use rayon::prelude::*;
 
 use super::estimate::{Estimate, REPLICATES, Replicate, stream};
 use super::goniophotometer::Leaving;
+use super::integrator::bidirectional::{PacketTracer, Splats, Target as Seen};
 use super::integrator::light::LightTracer;
 use super::integrator::path::{Limits, PathTracer};
+use super::light::shares::Shares;
 use super::ray::SurfacePoint;
 use super::sampler::Sampler;
 use super::scene::Scene;
@@ -44,7 +46,7 @@ pub struct Settings {
     pub limits: Limits,
     /// Running sums, up to 1, of the probabilities with which a band is kept where a path must be split, one per band.
     pub heroes: Vec<f64>,
-    /// Whether packets from the lights help paths from the camera in making pictures
+    /// Whether packets from the lights help paths from the camera and from meters
     /// ([`bidirectional`](super::integrator::bidirectional)).
     pub packets: bool,
     /// Whether virtual lights stand for light between diffuse surfaces in pictures ([`virtual_lights`](super::integrator::virtual_lights));
@@ -111,21 +113,33 @@ impl<'a> Board<'a> {
     /// Samples until every replicate of this share has `samples` of them.
     pub fn sample_until(&mut self, samples: u64) {
         let (scene, settings, share, meters) = (self.scene, self.settings, self.share, &self.meters);
+        let bands = scene.bands().len();
+        let shares = settings.packets.then(|| Shares::new(scene.lights(), bands));
         self.replicates.par_iter_mut().enumerate().filter(|(i, _)| share.has(i % REPLICATES)).for_each_init(
             || {
-                let leaving = Leaving::new(scene.bands().len());
-                (
-                    PathTracer::new(scene, settings.limits, &settings.heroes),
-                    LightTracer::new(scene, &settings.heroes),
-                    leaving,
-                )
+                let tracer = PathTracer::new(scene, settings.limits, &settings.heroes);
+                let tracer = match &shares {
+                    Some(shares) => tracer.beside(shares),
+                    None => tracer,
+                };
+                (tracer, LightTracer::new(scene, &settings.heroes), Leaving::new(bands))
             },
             |(tracer, packets, leaving), (index, replicate)| {
                 let (instrument, meter) = &meters[index / REPLICATES];
                 let stream = stream(*instrument, index % REPLICATES);
                 let mut sampler = Sampler::new(settings.seed, stream, 0);
+                let (seen, area_m2) = match &meter.place {
+                    Place::Point(point) => (Some(Seen::Point(point, meter.response)), 0.0),
+                    Place::Area(shape) => (Some(Seen::Area(shape.as_ref())), shape.area()),
+                    Place::Around => (None, 0.0),
+                };
+                let beside = shares.as_ref().zip(seen);
+                let mut beside = beside.map(|(shares, seen)| {
+                    Beside::new(scene, settings, shares, seen, (*instrument, index % REPLICATES))
+                });
                 while replicate.samples() < samples {
-                    sampler.start(replicate.samples());
+                    let number = replicate.samples();
+                    sampler.start(number);
                     let point = match &meter.place {
                         Place::Point(point) => *point,
                         Place::Area(shape) => {
@@ -139,7 +153,8 @@ impl<'a> Board<'a> {
                             continue;
                         }
                     };
-                    replicate.add(stream, tracer.reading(&point, &meter.response, &mut sampler));
+                    let path = tracer.reading(&point, &meter.response, area_m2, &mut sampler);
+                    replicate.add(stream, beside.as_mut().map_or(path, |beside| beside.add_to(path, number)));
                 }
             },
         );
@@ -180,6 +195,43 @@ impl<'a> Board<'a> {
     /// Puts a replicate in place that was sampled before.
     pub fn restore(&mut self, meter: usize, replicate: usize, state: Replicate) {
         self.replicates[meter * REPLICATES + replicate] = state;
+    }
+}
+
+/// The packets beside the paths of a replicate: as many, with random numbers of their own.
+struct Beside<'a> {
+    tracer: PacketTracer<'a>,
+    sampler: Sampler,
+    splats: Splats,
+    sum: Vec<f64>,
+}
+
+impl<'a> Beside<'a> {
+    fn new(
+        scene: &'a Scene,
+        settings: &'a Settings,
+        shares: &'a Shares,
+        seen: Seen<'a>,
+        (instrument, replicate): (u64, usize),
+    ) -> Self {
+        // Streams of another instrument: none is shared with a meter or a pixel.
+        let stream = stream(instrument + (1 << 31), replicate);
+        Self {
+            tracer: PacketTracer::new(scene, settings.limits, &settings.heroes, shares, seen),
+            sampler: Sampler::new(settings.seed, stream, 0),
+            splats: Splats::default(),
+            sum: vec![0.0; scene.bands().len()],
+        }
+    }
+
+    /// What a path found, and a packet of the same number.
+    fn add_to(&mut self, path: &[f64], number: u64) -> &[f64] {
+        self.splats.clear();
+        self.sampler.start(number);
+        self.tracer.packet(&mut self.sampler, &mut self.splats);
+        self.sum.copy_from_slice(path);
+        self.sum.iter_mut().zip(self.splats.last(path.len())).for_each(|(sum, more)| *sum += more);
+        &self.sum
     }
 }
 

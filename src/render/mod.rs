@@ -30,6 +30,7 @@
 //! | [`estimate`], [`measure`], [`noise`] | readings with their standard errors, and the noise of pictures |
 //! | [`audit`] | where the energy goes, and what readings lose |
 //! | [`gonioreflectometer`] | the BRDF of a sample |
+//! | [`light_map`] | where the points of a grid are |
 //! | [`goniophotometer`] | the intensities of all that shines, and its flux |
 
 pub mod accelerate;
@@ -48,6 +49,7 @@ pub mod gonioreflectometer;
 mod hierarchy;
 pub mod integrator;
 pub mod light;
+pub mod light_map;
 pub mod material;
 pub mod measure;
 pub mod mesh;

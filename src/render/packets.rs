@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use super::estimate::{Faults, stream};
-use super::integrator::bidirectional::{PacketTracer, Splats};
+use super::integrator::bidirectional::{PacketTracer, Splats, Target};
 use super::light::shares::Shares;
 use super::measure::Settings;
 use super::sampler::Sampler;
@@ -85,7 +85,10 @@ impl PacketPicture {
         for first in (0..per_stream).step_by(ROUND as usize) {
             let last = (first + ROUND).min(per_stream);
             brought.par_iter_mut().enumerate().for_each_init(
-                || PacketTracer::new(task.scene, task.settings.limits, &task.settings.heroes, task.shares, task.camera),
+                || {
+                    let (limits, heroes) = (task.settings.limits, &task.settings.heroes);
+                    PacketTracer::new(task.scene, limits, heroes, task.shares, Target::Camera(task.camera))
+                },
                 |tracer, (number, Brought { splats, together, faults })| {
                     splats.clear();
                     // Streams of another instrument: none is shared with a pixel.

@@ -7,6 +7,7 @@ use super::build::{Instrument, Kind, Quantities};
 use super::estimate::{Estimate, Faults, Figure};
 use super::goniophotometer::Measured;
 use super::gonioreflectometer;
+use super::light_map::LightMap;
 use super::measure::{Board, Meter};
 use super::noise::Noise;
 use super::sensor::response::Response;
@@ -46,13 +47,11 @@ pub struct Spectral {
 /// The points of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    /// Along the first and the second edge.
+    /// Across and up the map.
     pub counts: [usize; 2],
-    /// The corner from which the edges go, m.
-    pub corner: DVec3,
-    /// The edges, m.
-    pub edges: [DVec3; 2],
-    /// Row by row along the first edge.
+    /// Where they are.
+    pub map: LightMap,
+    /// Row by row across the map.
     pub figures: Vec<Figure>,
 }
 
@@ -91,10 +90,7 @@ impl Points {
     /// The middle of the cell `index`, m.
     #[must_use]
     pub fn position(&self, index: usize) -> DVec3 {
-        let [m, n] = self.counts;
-        #[expect(clippy::cast_precision_loss, reason = "numbers of points")]
-        let along = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
-        self.corner + along(index % m, m) * self.edges[0] + along(index / m, n) * self.edges[1]
+        self.map.middle(self.counts, index).position
     }
 }
 
@@ -164,9 +160,7 @@ pub fn of_meters(
     estimates.iter().for_each(|e| faults.append(&e.faults()));
     let (quantity, unit) = quantity(&meters[0].response);
     let points = match &instrument.kind {
-        Kind::Grid { counts, corner, edges, .. } => {
-            Some(Points { counts: *counts, corner: *corner, edges: *edges, figures: figures.clone() })
-        }
+        Kind::Grid { counts, map, .. } => Some(Points { counts: *counts, map: *map, figures: figures.clone() }),
         _ => None,
     };
     Some(Reading {

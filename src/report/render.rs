@@ -24,7 +24,7 @@ pub fn model(built: &Built) -> Value {
         _ if built.radiosity.is_some() => ("radiosity", "all light, between diffuse patches, without random numbers"),
         _ if !limits.shadows => ("preview", "direct light without shadows; no measurement"),
         Follow::All if built.settings.packets => {
-            ("bidirectional", "all light, direct and reflected; pictures by paths from the camera and from the lights")
+            ("bidirectional", "all light, direct and reflected; by paths from the instruments and from the lights")
         }
         Follow::All => ("path", "all light, direct and reflected"),
         Follow::Specular => ("whitted", "direct light and its reflections in mirrors and glass"),
@@ -39,7 +39,7 @@ pub fn model(built: &Built) -> Value {
     }
     if built.analysis.caustics_missed && limits.follow == Follow::All {
         left_out.push(if built.settings.packets {
-            "light of one direction that polished surfaces throw on meters"
+            "light of one direction that polished surfaces throw on meters at a point"
         } else {
             "light of one direction that polished surfaces throw on others"
         });
@@ -49,6 +49,9 @@ pub fn model(built: &Built) -> Value {
     }
     if !built.analysis.dark_lights.is_empty() {
         left_out.push("lights of no flux");
+    }
+    if !built.analysis.out_of_reach.is_empty() {
+        left_out.push("lights that reach no surface and no instrument");
     }
     if built.analysis.polished_surfaces > 0 && !built.analysis.polarisation {
         left_out.push("polarisation");
@@ -94,6 +97,7 @@ pub fn model(built: &Built) -> Value {
         "lights": {
             "in_closed_form": analysis.closed_form_lights,
             "without_flux": analysis.dark_lights,
+            "out_of_reach": analysis.out_of_reach,
         },
         "wavelengths": {
             "count": bands.len(),
@@ -184,7 +188,7 @@ fn grid(p: &Points) -> Value {
     let values = || p.figures.iter().map(|f| f.value);
     json!({
         "points": p.counts,
-        "size_m": p.edges.map(glam::DVec3::length),
+        "size_m": p.map.size_m(),
         "minimum": values().fold(f64::INFINITY, f64::min),
         "maximum": values().fold(f64::NEG_INFINITY, f64::max),
         "values": rows(|f| f.value),
@@ -447,6 +451,9 @@ pub fn contents_text(built: &Built) -> String {
     }
     for light in &analysis.dark_lights {
         let _ = writeln!(out, "light   {light}: left out, it has no flux");
+    }
+    for light in &analysis.out_of_reach {
+        let _ = writeln!(out, "light   {light}: left out, it reaches no surface and no instrument");
     }
     out
 }

@@ -307,7 +307,12 @@ fn what_cannot_be_measured_is_refused_where_it_stands() {
         (light, "goniophotometer = {}\ntarget = \"1 %\"", ":4:8:", "expected `meter_samples`"),
         (light, "integrating_sphere = { of = 1 }", ":5:24:", "unknown field `of`"),
         (&sky, "integrating_sphere = {}", ":7:22:", "light 2 shines from outside"),
-        (light, "illuminance = { grid = { on = \"x\", points = [2, 2] } }", ":5:31:", "no rectangle is called `x`"),
+        (
+            light,
+            "illuminance = { grid = { on = \"x\", points = [2, 2] } }",
+            ":5:31:",
+            "no rectangle, sphere or cylinder is called `x`",
+        ),
         (light, "illuminance = { grid = { points = [2, 2] } }", ":5:15:", "without one place"),
         (
             light,
@@ -324,4 +329,103 @@ fn what_cannot_be_measured_is_refused_where_it_stands() {
     let state = folder.path().join("state");
     let refused = photopic().arg("render").arg(&path).arg("--checkpoint").arg(&state).assert().code(2);
     refused.stderr(contains("a state is kept only for meters and pictures"));
+}
+
+/// Parallel light of E₀ on a column and on a ball: E₀ cosθ where the surface faces it, at the places that the table says.
+#[test]
+fn light_maps_go_around_columns_and_balls() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[render]
+meter_samples = 64
+[[shape]]
+name = "column"
+cylinder = { from = [0, 0, 0], to = [0, 0, 1], radius = "0.25 m", closed = true }
+[[shape]]
+name = "ball"
+sphere = { centre = [0, 3, 0], radius = "0.5 m" }
+[[light]]
+distant = { from = [1, 0, 0], irradiance = "1000 lx" }
+[[sensor]]
+name = "column"
+illuminance = { grid = { on = "column", points = [12, 3], isolux = "column.svg", csv = "column.csv" } }
+[[sensor]]
+name = "ball"
+illuminance = { grid = { on = "ball", points = [10, 6], isolux = "ball.png", csv = "ball.csv" } }
+"#;
+    let sensors = render(folder.path(), text);
+    for (name, centre, radius, points, size) in
+        [("column", [0.0, 0.0], 0.25, 36, [2.0 * PI * 0.25, 1.0]), ("ball", [0.0, 3.0], 0.5, 60, [PI, 1.0])]
+    {
+        let table = std::fs::read_to_string(folder.path().join(format!("{name}.csv"))).expect("a table");
+        let mut count = 0;
+        for line in table.lines().skip(1) {
+            let row: Vec<f64> = line.split(',').map(|f| f.parse().expect("a number")).collect();
+            let [x, y, z, value, _] = row[..] else { panic!("{line}") };
+            let (dx, dy) = (x - centre[0], y - centre[1]);
+            let from_axis = if name == "ball" { dx.hypot(dy).hypot(z) } else { dx.hypot(dy) };
+            assert!((from_axis - radius).abs() < 1e-12, "{line}");
+            let expected = 1000.0 * (dx / radius).max(0.0);
+            assert!((value - expected).abs() < 1e-9 * 1000.0, "{line}, expected {expected}");
+            count += 1;
+        }
+        assert_eq!(count, points);
+        let sensor = sensors.as_array().expect("sensors").iter().find(|s| s["name"] == name).expect("the sensor");
+        let told = numbers(&sensor["grid"]["size_m"]);
+        assert!((told[0] - size[0]).abs() < 1e-12 && (told[1] - size[1]).abs() < 1e-12, "{told:?}");
+    }
+    assert!(folder.path().join("column.svg").exists() && folder.path().join("ball.png").exists());
+}
+
+/// A lamp on the floor that shines down, a spot that looks away and a lamp behind the meter's back light nothing: they are left out, and named;
+/// with `--model full` they are there, and the reading is the same.
+#[test]
+fn lights_that_reach_nothing_are_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"
+[[material]]
+name = "grey"
+reflectance = 0.5
+[[shape]]
+name = "floor"
+material = "grey"
+rectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }
+[[shape]]
+name = "away"
+emission = { radiance = "100 cd/m2" }
+rectangle = { corner = [-1, -1, 3], edges = [[2, 0, 0], [0, 2, 0]] }
+[[shape]]
+name = "down"
+emission = { radiance = "100 cd/m2" }
+rectangle = { corner = [-0.5, -0.5, 2.5], edges = [[0, 1, 0], [1, 0, 0]] }
+[[light]]
+name = "sky beam"
+spot = { at = [0, 0, 4], aim = [0, 0, 9], intensity = "1000 cd", half_angle = "30 deg" }
+[[light]]
+name = "lamp"
+point = { at = [0, 0, 2], flux = "100 lm" }
+[[sensor]]
+name = "floor"
+illuminance = { at = [0.2, 0, 0] }
+"#;
+    std::fs::write(folder.path().join("scene.toml"), text).expect("a scene");
+    let run = |extent: &str| {
+        let mut command = photopic();
+        command.current_dir(folder.path()).args(["render", "scene.toml", "--json", "--packets", "0"]);
+        let output = command.args(["--meter-samples", "8192", "--model", extent]).output().expect("it runs");
+        let out: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        out["results"][0].clone()
+    };
+    let (minimal, full) = (run("minimal"), run("full"));
+    assert_eq!(minimal["model"]["lights"]["out_of_reach"], serde_json::json!(["sky beam", "away"]));
+    assert_eq!(full["model"]["lights"]["out_of_reach"], serde_json::json!([]));
+    let [a, b] = [&minimal, &full].map(|out| &out["sensors"][0]);
+    let error = number(&a["standard_error"]).hypot(number(&b["standard_error"]));
+    let difference = number(&a["value"]) - number(&b["value"]);
+    // The choice of wavelengths is good to 0.001.
+    assert!(difference.abs() < 4.5 * error + 1e-3 * number(&b["value"]), "{a} {b}");
+    // Seen by a camera from above, the lamp that faces away matters.
+    let above = "[[sensor]]\nname = \"view\"\ncamera = { at = [0, 0, 5], look_at = [0, 0, 0], up = [0, 1, 0], resolution = [2, 2] }\n";
+    std::fs::write(folder.path().join("scene.toml"), format!("{text}{above}")).expect("a scene");
+    assert_eq!(run("minimal")["model"]["lights"]["out_of_reach"], serde_json::json!([]));
 }

@@ -13,6 +13,7 @@ mod instruments;
 mod keys;
 mod lights;
 mod meshes;
+mod meters_from_lights;
 mod packets;
 mod radiosity;
 mod reflectometer;

@@ -217,6 +217,48 @@ fn radiosity_and_path_tracing_agree() {
     }
 }
 
+/// Blocks that stand on the floor, as they please, close to a lamp that hangs a finger's breadth below the ceiling: the mean over the floor is
+/// the path tracer's within three standard errors and what is printed of the discretisation, and no patch passes light on to a block's
+/// inside (form factors sum to 1 in a closed room, but for visibility by rays).
+#[test]
+fn light_under_blocks_agrees_with_path_tracing() {
+    let turned = |angle_deg: f64, [x, y, h]: [f64; 3]| {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let at = |a: f64, b: f64, z: f64| format!("[{}, {}, {z}]", x + a * cos - b * sin, y + a * sin + b * cos);
+        let corners: Vec<String> = [0.0, h]
+            .iter()
+            .flat_map(|z| [(-0.3, -0.25), (0.3, -0.25), (0.3, 0.25), (-0.3, 0.25)].map(|(a, b)| at(a, b, *z)))
+            .collect();
+        format!(
+            "[[shape]]\nmaterial = \"white\"\npolyhedron = {{ vertices = [{}], faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]] }}\n",
+            corners.join(", ")
+        )
+    };
+    let room = "[[material]]\nname = \"white\"\nreflectance = 0.75\n[[shape]]\nname = \"floor\"\nmaterial = \"white\"\nrectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }\n[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [-1, -1, 2], edges = [[0, 2, 0], [2, 0, 0]] }\n[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [-1, 1, 0], edges = [[2, 0, 0], [0, 0, 2]] }\n[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [-1, -1, 0], edges = [[0, 2, 0], [0, 0, 2]] }\n[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [1, -1, 0], edges = [[0, 0, 2], [0, 2, 0]] }\n";
+    let lamp = "[[shape]]\nemission = { flux = \"2000 lm\", spectrum = \"line:555nm\" }\nrectangle = { corner = [-0.25, -0.2, 1.99], edges = [[0, 0.4, 0], [0.5, 0, 0]] }\n";
+    let meter = "[[sensor]]\nname = \"floor\"\nilluminance = { on = \"floor\" }\n[[sensor]]\nname = \"wall\"\nilluminance = { at = [-0.99, 0, 1], normal = [1, 0, 0] }\n";
+    for angles in [[0.0, 0.0], [17.0, -35.0]] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let blocks = turned(angles[0], [-0.4, 0.35, 1.2]) + &turned(angles[1], [0.45, -0.3, 0.55]);
+        let text = format!("{room}{blocks}{lamp}{meter}");
+        let run = |head: &str| {
+            let path = scene(&folder, &format!("{head}{text}"));
+            json(photopic().arg("render").arg(path).args(["--json", "--packets", "0", "--meter-samples", "262144"]))
+        };
+        let (traced, solved) = (run(""), run("[render]\nsolver = \"radiosity\"\npatch_edge = \"0.17 m\"\n"));
+        let number = |v: &Value, key: &str| v[key].as_f64().unwrap_or_else(|| panic!("{key}: {v}"));
+        for index in [0, 1] {
+            let [a, b] = [&traced, &solved].map(|out| &out["results"][0]["sensors"][index]);
+            let (mean, other) = (number(a, "value"), number(b, "value"));
+            let allowed = 3.0 * number(a, "standard_error") + number(b, "discretisation");
+            assert!((mean - other).abs() <= allowed, "{angles:?}: {mean} {other} {allowed}");
+            assert!(allowed < 0.02 * mean, "{angles:?}: {allowed} of {mean}");
+        }
+        let sum = number(&solved["results"][0]["radiosity"], "greatest_sum_of_form_factors");
+        assert!(sum < 1.05, "{angles:?}: {sum}");
+    }
+}
+
 /// What is not diffuse is refused by name and place, with the solver that takes it.
 #[test]
 fn what_radiosity_cannot_do_is_told() {

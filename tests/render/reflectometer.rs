@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use photopic::brdf::Brdf;
 use photopic::brdf::description::{Bands, Material};
-use photopic::brdf::format::csv;
+use photopic::brdf::format::{csv, merl};
 use photopic::geometry::direction::from_degrees;
 use predicates::str::contains;
 
@@ -96,6 +96,53 @@ fn a_diffuse_sample_gives_itself_back() {
 #[test]
 fn a_rough_metal_gives_itself_back() {
     gives_itself_back("ggx(alpha=0.4, eta=1.5, k=3)");
+}
+
+/// A MERL table holds every cell in its bin, and nothing where the instrument did not look. Errors are those of a second instrument of the
+/// same kind, which writes a CSV file.
+#[test]
+fn a_merl_table_holds_the_cells_and_nothing_between() {
+    for material in ["lambert(reflectance=0.5)", "ggx(alpha=0.4, eta=1.5, k=3)"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scene = sample(material, "sample.csv");
+        let instrument = scene.rfind("[[sensor]]").expect("a sensor");
+        let second = scene[instrument..].replace("sample.csv", "sample.binary").replace("\"sample\"", "\"again\"");
+        std::fs::write(folder.path().join("scene.toml"), format!("{scene}{second}")).expect("a scene");
+        let output = photopic().current_dir(folder.path()).args(["render", "scene.toml"]).output().expect("it runs");
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success() && told.contains("R008"), "{told}");
+        let bytes = std::fs::read(folder.path().join("sample.binary")).expect("a table");
+        let table = merl::parse(&bytes).expect("it is a table").value;
+        let brdf = material.parse::<Material>().expect("a material");
+        let brdf = brdf.prepare(Bands::Wavelengths(&[560.0])).expect("a model");
+        let text = std::fs::read_to_string(folder.path().join("sample.csv")).expect("a table");
+        let (mut squares, mut cells, mut places) = (0.0, 0, std::collections::HashSet::new());
+        for line in text.lines().skip(1) {
+            let row: Vec<f64> = line.split(',').map(|f| f.parse().expect("a number")).collect();
+            let [theta_i, _, theta, phi, _, value, error] = row[..] else { panic!("{line}") };
+            let (incident, outgoing) = (from_degrees(theta_i, 0.0), from_degrees(theta, phi));
+            places.insert(table.bin_of(incident, outgoing));
+            // Along the normal all azimuths are in one bin, with those of the same path the other way.
+            if theta_i == 0.0 || theta == 0.0 {
+                continue;
+            }
+            let read = table.nearest(incident, outgoing);
+            assert!(read[0] == read[1] && read[1] == read[2], "a grey sample: {read:?}");
+            let expected = mean(brdf.as_ref(), theta_i, theta, phi);
+            // A cell of few packets has no error to speak of; its value is a few packets' worth.
+            if error < 0.2 * value {
+                let off = (f64::from(read[0]) - expected) / error;
+                assert!(off.abs() < 5.5, "{line}: {read:?}, expected {expected}");
+                squares += off * off;
+                cells += 1;
+            }
+        }
+        // t² of 31 degrees of freedom: 31/29 ± 1.59; four standard deviations of the mean of 50.
+        let mean = squares / f64::from(cells);
+        assert!(cells >= 50 && (0.17..1.97).contains(&mean), "{mean} of {cells}");
+        let (bins, missing) = table.coverage();
+        assert_eq!(bins - missing, places.len());
+    }
 }
 
 /// White walls of a groove send everything back, however often it was reflected.

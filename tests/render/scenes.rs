@@ -162,6 +162,7 @@ fn the_model_is_what_the_scene_requires() {
     assert!(brushed["reflected_light"] == "global" && brushed["materials"]["dispersive"] == serde_json::json!([]));
     let black = model("", "[[shape]]\nsphere = { centre = [0, 5, 0], radius = \"1 m\" }\n", &[]);
     assert_eq!(black["reflected_light"], "none: nothing scatters");
-    assert_eq!(black["lights"], serde_json::json!({"in_closed_form": ["lamp"], "without_flux": ["off"]}));
+    let lights = serde_json::json!({"in_closed_form": ["lamp"], "without_flux": ["off"], "out_of_reach": []});
+    assert_eq!(black["lights"], lights);
     photopic().args(["render", "x.toml", "--model", "half"]).assert().code(2);
 }

@@ -9,6 +9,8 @@ use photopic::render::bands::Bands;
 use photopic::render::emission::Emission;
 use photopic::render::estimate::{Estimate, Figure, REPLICATES, Replicate};
 use photopic::render::integrator::path::{Limits, PathTracer};
+use photopic::render::light::bounding::BoundingSphere;
+use photopic::render::light::environment::Environment;
 use photopic::render::material::Material;
 use photopic::render::material::dielectric::Dielectric;
 use photopic::render::material::opaque::Opaque;
@@ -18,6 +20,7 @@ use photopic::render::sampler::Sampler;
 use photopic::render::scene::{Part, Scene};
 use photopic::render::shape::Shape;
 use photopic::render::shape::plane::Plane;
+use photopic::render::shape::sphere::Sphere;
 
 use crate::common::shared;
 
@@ -88,4 +91,31 @@ fn a_pile_of_thin_panes_is_stokes_pile_of_plates() {
     let figure = seen(&pile, theta_deg, true, 1 << 16);
     assert!((figure.value - expected).abs() <= 3.0 * figure.standard_error, "{figure:?} {expected}");
     assert!(figure.standard_error < 1e-3 * expected);
+}
+
+/// In surroundings of radiance 1 every path through a ball that absorbs nothing sees just that (L/n² is the same along a ray). However
+/// early chance may end paths, it ends none of these: within the glass they are worth as much as before it, though they carry 1/n².
+#[test]
+fn chance_spares_paths_in_glass() {
+    let around = BoundingSphere::new(DVec3::ZERO, 3.0).expect("a sphere");
+    let sky = Environment::constant(&[1.0], around).expect("a sky");
+    let ball: Arc<dyn Shape> = Arc::new(Sphere::new(DVec3::ZERO, 1.0).expect("a ball"));
+    for index in [1.2, 1.5, 2.4] {
+        let part = Part {
+            shape: Arc::clone(&ball),
+            material: Arc::new(Dielectric::new(&[1.0], &[index]).expect("glass")),
+            emission: None,
+        };
+        let scene = Scene::new(Bands::lines(vec![555.0]), vec![part], vec![Arc::new(sky.clone())]);
+        let limits = Limits { polarisation: false, roulette_from: 0, ..Limits::default() };
+        let mut tracer = PathTracer::new(&scene, limits, &[1.0]);
+        for index in 0..2000 {
+            let mut sampler = Sampler::new(4, 1, index);
+            let [u, v, ..] = sampler.four();
+            let ray = Ray { origin: DVec3::new(1.4 * (u - 0.5), 1.4 * (v - 0.5), 2.0), direction: DVec3::NEG_Z };
+            let seen = tracer.radiance(ray, &mut sampler)[0];
+            // A dozen factors of rounding each way.
+            assert!((seen - 1.0).abs() < 1e-13, "{seen}");
+        }
+    }
 }

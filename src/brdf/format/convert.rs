@@ -11,6 +11,9 @@ use crate::brdf::table::{Channel, Error, HalfAngle, Points, Resolution, Table, r
 use crate::finding::{Checked, Finding};
 use crate::geometry::direction::from_degrees;
 
+/// Wavelengths that stand for red, green and blue where a material has wavelengths, nm.
+pub const RGB_NM: [f64; 3] = [650.0, 550.0, 450.0];
+
 /// Directions at which a material is asked, all combinations of angles in degrees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Net {

@@ -12,7 +12,7 @@ use super::numbers::{Bins, Numbers, check_theta_above};
 use super::settings;
 use crate::brdf::Brdf;
 use crate::brdf::format::alta::{self, Encoding};
-use crate::brdf::format::convert::{Net, bins, nodes, sampled};
+use crate::brdf::format::convert::{Net, RGB_NM, bins, nodes, sampled};
 use crate::brdf::format::{csv, merl};
 use crate::brdf::table::{Channel, Error, Resolution, Table};
 use crate::cli::notes::Notes;
@@ -20,9 +20,6 @@ use crate::cli::places::Places;
 use crate::cli::{Failure, Talk};
 use crate::finding::{Checked, Finding, Location};
 use crate::report::envelope::{Envelope, Input};
-
-/// Wavelengths of a model where none are given, nm: red, green, blue.
-const RGB_NM: [f64; 3] = [650.0, 550.0, 450.0];
 
 /// The formats that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use crate::brdf::format::merl;
 use crate::cli::Failure;
 use crate::cli::output::write_file;
 use crate::finding::Finding;
@@ -51,16 +52,23 @@ impl Place<'_> {
         Ok(text.findings)
     }
 
-    /// Writes the BRDF table of a gonioreflectometer.
+    /// Writes the BRDF table of a gonioreflectometer; what the format could not carry.
     pub(super) fn brdf(
         &self,
         described: &Gonioreflectometer,
         measured: &gonioreflectometer::Measured,
         bands: &Bands,
         written: &mut Vec<String>,
-    ) -> Result<(), Failure> {
-        let Some(file) = &described.file else { return Ok(()) };
-        self.write(file, report::brdf_csv(measured, bands).as_bytes(), written)
+    ) -> Result<Vec<Finding>, Failure> {
+        let Some(file) = &described.file else { return Ok(Vec::new()) };
+        if !file.to_lowercase().ends_with(".binary") {
+            self.write(file, report::brdf_csv(measured, bands).as_bytes(), written)?;
+            return Ok(Vec::new());
+        }
+        let table = measured.bins(bands).map_err(|e| Failure::Message(format!("{file}: {e}")))?;
+        let bytes = merl::write(&table.value).expect("a table of three channels");
+        self.write(file, &bytes, written)?;
+        Ok(table.findings)
     }
 
     /// Writes the light map and the table of a grid.

@@ -204,7 +204,8 @@ impl Work {
                 let measured = gonioreflectometer.measure(scene, settings, (n as u64) << 32, render.meter_samples);
                 progress.inc(render.meter_samples * gonioreflectometer.incident() as u64);
                 if let Some(described) = &self.description.sensor[n].gonioreflectometer {
-                    place.brdf(described.get_ref(), &measured, scene.bands(), &mut done.written)?;
+                    let described = described.get_ref();
+                    done.findings.extend(place.brdf(described, &measured, scene.bands(), &mut done.written)?);
                 }
                 done.readings.push(reading::of_gonioreflectometer(instrument, measured, &self.built.quantities));
             } else if let Some(r) = reading::of_board(

@@ -39,6 +39,8 @@ pub struct Analysis {
     pub caustics_missed: bool,
     /// Lights of no flux, which were left out.
     pub dark_lights: Vec<String>,
+    /// Lights whose light comes to no surface and to no instrument, which were left out.
+    pub out_of_reach: Vec<String>,
     /// Lights that reach a point from one direction, in closed form: no direction has to be drawn.
     pub closed_form_lights: Vec<String>,
 }
@@ -54,7 +56,7 @@ impl Builder<'_> {
         surfaces: &[Range<usize>],
         materials: &[Named],
         lights: &[(String, Arc<dyn Light>)],
-        dark_lights: Vec<String>,
+        [dark_lights, out_of_reach]: [Vec<String>; 2],
         bands: usize,
     ) -> Analysis {
         let render = &self.description.render;
@@ -100,6 +102,7 @@ impl Builder<'_> {
             anisotropic: of(|n| n.anisotropic),
             global: parts.iter().any(|p| !is_black(p.material.as_ref(), bands)),
             dark_lights,
+            out_of_reach,
             closed_form_lights: (lights.iter())
                 .filter(|(_, light)| light.is_one_direction())
                 .map(|(name, _)| name.clone())

@@ -1,29 +1,31 @@
 //! Instruments, and the quantities that they read.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::Builder;
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
 use crate::geometry::lens::Distortion;
 use crate::render::bands::{Bands, Width};
-use crate::render::description::Error;
 use crate::render::description::light::Light;
 use crate::render::description::quantity::Angle;
 use crate::render::description::sensor::{
     Camera as DescribedCamera, Goniophotometer as DescribedGoniophotometer,
     Gonioreflectometer as DescribedGonioreflectometer, Grid, Illuminance, Projection as Layout, Sensor,
 };
-use crate::render::description::surface::Shape;
+use crate::render::description::{Error, Solver};
 use crate::render::goniophotometer::Goniophotometer;
 use crate::render::gonioreflectometer::{Gonioreflectometer, Spot};
+use crate::render::light_map::LightMap;
 use crate::render::measure::{Meter, Place};
 use crate::render::ray::SurfacePoint;
 use crate::render::scene::Scene;
 use crate::render::sensor::camera::{Camera, Projection};
 use crate::render::sensor::response::Response;
+use crate::render::shape::rectangle::Rectangle;
 
 /// What each band adds to the quantities that are read, per unit of the band's value.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,16 +70,14 @@ pub struct Instrument {
 pub enum Kind {
     /// A meter at one place.
     Meter(Meter),
-    /// Meters on a grid, row by row along its first edge.
+    /// Meters on a grid, row by row across its map.
     Grid {
         /// The meters.
         meters: Vec<Meter>,
-        /// Points along the first and the second edge.
+        /// Points across and up the map.
         counts: [usize; 2],
-        /// The corner from which the edges go, m.
-        corner: DVec3,
-        /// The edges, m.
-        edges: [DVec3; 2],
+        /// Where they are.
+        map: LightMap,
     },
     /// A goniophotometer.
     Goniophotometer(Goniophotometer),
@@ -189,7 +189,7 @@ impl Builder<'_> {
                 let axis = self.unit(i.normal.unwrap_or([0.0, 0.0, 1.0]), span)?;
                 Ok(Kind::Meter(Meter { place: point(DVec3::from_array(*at), axis, scene), response }))
             }
-            (None, Some(grid), None) if i.normal.is_none() => self.grid(grid, span, scene),
+            (None, Some(grid), None) if i.normal.is_none() => self.grid(grid, span, scene, surfaces),
             (None, None, Some(on)) if i.normal.is_none() => {
                 let shapes = &self.description.shape;
                 let named = |n: usize| shapes[n].name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref());
@@ -209,42 +209,62 @@ impl Builder<'_> {
         }
     }
 
-    /// Meters in the middles of the cells of a rectangle.
-    fn grid(&self, grid: &Grid, span: &Range<usize>, scene: &Scene) -> Result<Kind, Error> {
-        let (corner, edges) = match (grid.corner, grid.edges, &grid.on) {
-            (Some(corner), Some(edges), None) => (corner, edges),
-            (None, None, Some(on)) => {
-                let named = |s: &&Shape| s.name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref());
-                let shape = self.description.shape.iter().find(named).and_then(|s| s.rectangle.as_ref());
-                let Some(rectangle) = shape.map(toml::Spanned::get_ref) else {
-                    let message = format!("no rectangle is called `{}`; expected the name of one", on.get_ref());
-                    return Err(self.wrong(&on.span(), message));
-                };
-                (rectangle.corner, rectangle.edges)
+    /// Meters in the middles of the cells of a map.
+    fn grid(&self, grid: &Grid, span: &Range<usize>, scene: &Scene, surfaces: &[Range<usize>]) -> Result<Kind, Error> {
+        let map = match (grid.corner, grid.edges, &grid.on) {
+            (Some(corner), Some(edges), None) => {
+                LightMap::Flat { corner: DVec3::from_array(corner), edges: edges.map(DVec3::from_array) }
             }
+            (None, None, Some(on)) => self.mapped(on, scene, surfaces)?,
             _ => return Err(self.wrong(span, "a grid without one place; expected `corner` and `edges`, or `on`")),
         };
-        let (corner, edges) = (DVec3::from_array(corner), edges.map(DVec3::from_array));
-        let [u, v] = edges;
-        let axis = self.unit(u.cross(v).to_array(), span)?;
         let [m, n] = grid.points;
         if m == 0 || n == 0 || u64::from(m) * u64::from(n) > MOST_POINTS {
             return Err(self.wrong(span, format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them")));
         }
         self.ends(grid.isolux.as_deref(), ["png", "svg"], span)?;
-        // A map is drawn at equal scale; edges askew have no such drawing.
-        if grid.isolux.is_some() && u.dot(v).abs() > 1e-6 * u.length() * v.length() {
-            return Err(self.wrong(span, "edges that are not at right angles; expected a rectangle for `isolux`"));
+        let counts = [m as usize, n as usize];
+        if let LightMap::Flat { edges: [u, v], .. } = map {
+            self.unit(u.cross(v).to_array(), span)?;
+            // A map is drawn at equal scale; edges askew have no such drawing.
+            if grid.isolux.is_some() && u.dot(v).abs() > 1e-6 * u.length() * v.length() {
+                return Err(self.wrong(span, "edges that are not at right angles; expected a rectangle for `isolux`"));
+            }
         }
-        let at = |i: u32, j: u32| {
-            let p = DVec2::new((f64::from(i) + 0.5) / f64::from(m), (f64::from(j) + 0.5) / f64::from(n));
-            corner + p.x * u + p.y * v
+        let place = |index: usize| {
+            let spot = map.middle(counts, index);
+            match (map, self.description.render.solver) {
+                // Packets land on areas: with them every point of a flat map is read all over its cell.
+                (LightMap::Flat { edges: [u, v], .. }, Solver::Bidirectional) => {
+                    let (a, b) = (u / f64::from(m), v / f64::from(n));
+                    let cell = Rectangle::new(spot.position - 0.5 * (a + b), a, b).map_err(|e| self.wrong(span, e))?;
+                    Ok(Place::Area(Arc::new(cell)))
+                }
+                _ => Ok(point(spot.position, spot.normal, scene)),
+            }
         };
-        let meters = (0..n)
-            .flat_map(|j| (0..m).map(move |i| (i, j)))
-            .map(|(i, j)| Meter { place: point(at(i, j), axis, scene), response: Response::Planar })
-            .collect();
-        Ok(Kind::Grid { meters, counts: [m as usize, n as usize], corner, edges })
+        let meters = (0..counts[0] * counts[1])
+            .map(|index| Ok(Meter { place: place(index)?, response: Response::Planar }))
+            .collect::<Result<_, Error>>()?;
+        Ok(Kind::Grid { meters, counts, map })
+    }
+
+    /// The outside of a shape as a map.
+    fn mapped(&self, on: &toml::Spanned<String>, scene: &Scene, surfaces: &[Range<usize>]) -> Result<LightMap, Error> {
+        let shapes = self.description.shape.iter().zip(surfaces);
+        let mut named = shapes.filter(|(s, _)| s.name.as_ref().is_some_and(|name| name.get_ref() == on.get_ref()));
+        let map = named.next().and_then(|(shape, surfaces)| match &shape.rectangle {
+            Some(r) => {
+                let (corner, edges) = (r.get_ref().corner, r.get_ref().edges);
+                Some(LightMap::Flat { corner: DVec3::from_array(corner), edges: edges.map(DVec3::from_array) })
+            }
+            None => LightMap::round(scene.surfaces().shapes()[surfaces.start].as_ref()),
+        });
+        map.ok_or_else(|| {
+            let message =
+                format!("no rectangle, sphere or cylinder is called `{}`; expected the name of one", on.get_ref());
+            self.wrong(&on.span(), message)
+        })
     }
 
     /// Instruments around everything need lights that they can be around.
@@ -293,6 +313,7 @@ impl Builder<'_> {
         g: &DescribedGonioreflectometer,
         span: &Range<usize>,
     ) -> Result<Gonioreflectometer, Error> {
+        self.ends(g.file.as_deref(), ["csv", "binary"], span)?;
         let degrees = |a: &Angle| a.0.to_degrees();
         let azimuths = g.phi_i.as_ref().map_or(vec![0.0], |all| all.iter().map(degrees).collect());
         let incident = g.theta_i.iter().flat_map(|theta| azimuths.iter().map(|phi| [degrees(theta), *phi])).collect();

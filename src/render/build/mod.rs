@@ -8,6 +8,7 @@ mod light;
 mod material;
 mod picture;
 mod radiosity;
+mod reach;
 mod surface;
 
 use std::cell::RefCell;
@@ -165,14 +166,14 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let (bands, wavelength_error) = builder.bands(&colours)?;
     let quantities = Quantities::new(&bands);
     let materials = builder.materials(&bands)?;
-    let (parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
+    let (mut parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
     let sphere = around(&parts);
     let mut lights: Vec<(String, Arc<dyn Light>)> = Vec::new();
     for (number, light) in description.light.iter().enumerate() {
         let name = light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone());
         lights.push((name, builder.light(light, number, &bands, &quantities, sphere)?));
     }
-    let mut dark_lights = Vec::new();
+    let (mut dark_lights, mut out_of_reach) = (Vec::new(), Vec::new());
     if description.render.model == Model::Minimal {
         let mut flux = vec![0.0; bands.len()];
         lights.retain(|(name, light)| {
@@ -183,8 +184,9 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
             }
             shines
         });
+        out_of_reach = builder.out_of_reach(&mut parts, &surfaces, &mut lights);
     }
-    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, dark_lights, bands.len());
+    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, [dark_lights, out_of_reach], bands.len());
     let (mut light_names, lights): (Vec<_>, Vec<_>) = lights.into_iter().unzip();
     let materials_of = description.shape.iter().zip(&surfaces).flat_map(|(shape, surfaces)| {
         let wanted = shape.material.as_ref().map(toml::Spanned::get_ref);
@@ -193,9 +195,8 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     });
     let material_of_surface = materials_of.collect();
     for (number, (shape, surfaces)) in description.shape.iter().zip(&surfaces).enumerate() {
-        if shape.emission.is_some() {
-            light_names.extend(surfaces.clone().map(|_| surface::name(shape, number)));
-        }
+        let shining = surfaces.clone().filter(|surface| parts[*surface].emission.is_some());
+        light_names.extend(shining.map(|_| surface::name(shape, number)));
     }
     let scene = Scene::new(bands, parts, lights);
     let instruments = builder.instruments(&scene, &surfaces)?;

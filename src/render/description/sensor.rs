@@ -77,7 +77,7 @@ pub struct Illuminance {
     pub on: Option<Spanned<String>>,
 }
 
-/// A grid of points on a rectangle: `corner` and `edges`, or `on`.
+/// A grid of points on a rectangle, or around a sphere or a cylinder: `corner` and `edges`, or `on`.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grid {
@@ -87,11 +87,11 @@ pub struct Grid {
     /// The two edges from it, m; the meters face the side from which the turn from the first to the second is anticlockwise.
     #[serde(default)]
     pub edges: Option<[Vector; 2]>,
-    /// The outside of the rectangle of this name.
+    /// The outside of the rectangle, the sphere or the cylinder's side of this name.
     #[serde(default)]
     #[schemars(with = "Option<String>")]
     pub on: Option<Spanned<String>>,
-    /// Points along each edge.
+    /// Points along each edge; around and along a cylinder, in longitude and height on a sphere.
     pub points: [u32; 2],
     /// Light map with isolux contours to write (PNG or SVG).
     #[serde(default)]
@@ -152,7 +152,7 @@ pub struct Gonioreflectometer {
     /// Between azimuths of reflection; 10° without it.
     #[serde(default)]
     pub phi_step: Option<Angle>,
-    /// BRDF table to write (CSV).
+    /// BRDF table to write: `.csv`, or `.binary` (MERL).
     #[serde(default)]
     pub file: Option<String>,
 }

@@ -26,6 +26,11 @@
 //!
 //! Shading normals: flux is scattered with the factor |ω_i·n_s| |ω_o·n_g| / (|ω_i·n_g| |ω_o·n_s|) that makes it agree with radiance.
 //!
+//! A meter is an instrument like the lens. At a point, of response R(ω), packets are connected with it: R in the place of J, and its own
+//! density p_R(ω) in that of 1/Ω. One that reads the mean over an area A has packets land on it, Δ = w Φ/A: then x₀ is a vertex
+//! like all others, at which the path's own density is p_R = cosθ/π and the packet's A cosθ, and light straight from the lamp and through
+//! glass or off mirrors is found by all three ways. So a caustic that falls on a meter is found where the meter has some area.
+//!
 //! Limits: lights that do not behave as light does ([`Light::emission_density`] is 0) are left to the path tracer; a caustic that is seen
 //! in a mirror or through glass is found by neither (but by chance, from the camera).
 //!
@@ -47,6 +52,70 @@ use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 use crate::render::sensor::camera::Camera;
+use crate::render::sensor::response::Response;
+use crate::render::shape::Shape;
+
+/// How much further than its crossing with a surface a packet looks for a meter that lies on it, and how much short of a meter at a point
+/// what hides it ends.
+const NEAR: f64 = 1e-9;
+
+/// Who looks at what packets bring.
+#[derive(Debug, Clone, Copy)]
+pub enum Target<'a> {
+    /// A camera: packets are connected with its lens.
+    Camera(&'a Camera),
+    /// A meter at a point: packets are connected with it. All that they add is in one pixel, 0.
+    Point(&'a SurfacePoint, Response),
+    /// A meter of the mean irradiance of a shape's outside: packets land on it. All that they add is in one pixel, 0.
+    Area(&'a dyn Shape),
+}
+
+/// How a target sees a point.
+struct View {
+    /// From the target, unit.
+    direction: DVec3,
+    distance: f64,
+    pixel: usize,
+    /// What radiance of an area there counts for: J/d² or R/d², 1/m².
+    response: f64,
+    /// The density per area with which the target's own paths come there, 1/m².
+    density: f64,
+}
+
+impl Target<'_> {
+    /// How it sees a point, from a place of its lens that two uniform numbers draw; `None` where it does not.
+    fn view(&self, position: DVec3, lens: [f64; 2]) -> Option<View> {
+        match *self {
+            Self::Camera(camera) => {
+                let shown = camera.show(position, lens)?;
+                let response = camera.pixels_per_solid_angle(shown.direction) / shown.distance / shown.distance;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+                let pixel = shown.y as usize * camera.width() as usize + shown.x as usize;
+                let density = response / camera.pixels();
+                Some(View { direction: shown.direction, distance: shown.distance, pixel, response, density })
+            }
+            Self::Point(point, response) => {
+                let way = position - point.position;
+                let distance = way.length();
+                let direction = way / distance;
+                let local = Frame::of(point.normal, point.tangent).local(direction);
+                let weight = response.weight(local);
+                (distance > 0.0 && weight > 0.0).then(|| View {
+                    direction,
+                    distance: distance * (1.0 - NEAR),
+                    pixel: 0,
+                    response: weight / distance / distance,
+                    density: response.pdf(local) / distance / distance,
+                })
+            }
+            Self::Area(_) => None,
+        }
+    }
+
+    fn has_lens(&self) -> bool {
+        matches!(self, Self::Camera(camera) if camera.has_lens())
+    }
+}
 
 /// What packets add to a picture.
 #[derive(Debug, Default)]
@@ -100,14 +169,14 @@ impl Splats {
     }
 }
 
-/// The tracer of packets towards a camera, of one thread.
+/// The tracer of packets towards an instrument, of one thread.
 #[derive(Debug)]
 pub struct PacketTracer<'a> {
     scene: &'a Scene,
     limits: Limits,
     heroes: &'a [f64],
     shares: &'a Shares,
-    camera: &'a Camera,
+    target: Target<'a>,
     choice: Choice,
     flux: Vec<f64>,
     value: Vec<f64>,
@@ -151,9 +220,9 @@ impl Rivals {
 }
 
 impl<'a> PacketTracer<'a> {
-    /// A tracer for a scene and a camera; `heroes` as for [`super::path::PathTracer::new`], `shares` of the scene's lights.
+    /// A tracer for a scene and an instrument; `heroes` as for [`super::path::PathTracer::new`], `shares` of the scene's lights.
     #[must_use]
-    pub fn new(scene: &'a Scene, limits: Limits, heroes: &'a [f64], shares: &'a Shares, camera: &'a Camera) -> Self {
+    pub fn new(scene: &'a Scene, limits: Limits, heroes: &'a [f64], shares: &'a Shares, target: Target<'a>) -> Self {
         let n = scene.bands().len();
         let bounds = scene.bounds();
         let middle = if bounds.is_finite() { 0.5 * (bounds.min + bounds.max) } else { DVec3::ZERO };
@@ -162,7 +231,7 @@ impl<'a> PacketTracer<'a> {
             limits,
             heroes,
             shares,
-            camera,
+            target,
             choice: Choice::new(scene.lights(), middle),
             flux: vec![0.0; n],
             value: vec![0.0; n],
@@ -173,7 +242,7 @@ impl<'a> PacketTracer<'a> {
         }
     }
 
-    /// Sends one packet through the scene; the mean of what packets add is what they add to the picture's radiance.
+    /// Sends one packet through the scene; the mean of what packets add is what they add to the picture's radiance or the meter's reading.
     pub fn packet(&mut self, sampler: &mut Sampler, splats: &mut Splats) {
         splats.next_packet();
         let [choice, u0, u1, hero] = sampler.four();
@@ -187,12 +256,22 @@ impl<'a> PacketTracer<'a> {
         self.fluoresced = false;
         self.polarisation.clear();
         let mut rivals: Option<Rivals> = None;
-        // Edges of the path from the lamp to the lens.
-        for edges in 2.. {
-            if self.limits.max_edges.is_some_and(|max| edges > max) {
+        let most = self.limits.max_edges;
+        let too_long = |edges: u32| most.is_some_and(|max| edges > max);
+        // Edges of the path from the lamp to where the packet comes next.
+        for edges in 1.. {
+            if too_long(edges) {
                 return;
             }
-            let Some((surface, crossing)) = self.scene.surfaces().closest(&ray, f64::INFINITY) else { return };
+            let closest = self.scene.surfaces().closest(&ray, f64::INFINITY);
+            if let Target::Area(shape) = self.target {
+                let reach = closest.as_ref().map_or(f64::INFINITY, |(_, crossing)| crossing.t * (1.0 + NEAR));
+                self.land(shape, &ray, reach, rivals, (index, probability), splats);
+            }
+            let Some((surface, crossing)) = closest else { return };
+            if too_long(edges + 1) {
+                return;
+            }
             let point = self.scene.surfaces().surface_point(surface, &ray, &crossing);
             let frame = Frame::of(point.shading, point.tangent);
             let (back, material) = (-ray.direction, self.scene.material(surface));
@@ -203,7 +282,7 @@ impl<'a> PacketTracer<'a> {
             }
             let here = match rivals {
                 Some(rivals) => rivals,
-                None => match self.rivals(index, probability, &point, back, crossing.t, material) {
+                None => match self.rivals((index, probability), &point, back, crossing.t, !material.is_delta()) {
                     Some(rivals) => rivals,
                     None => return,
                 },
@@ -258,15 +337,15 @@ impl<'a> PacketTracer<'a> {
         self.flux[self.hero] = kept;
     }
 
-    /// The rivals at the first vertex of a packet; `None` where what packets find is left to others.
+    /// The rivals at the first vertex of a packet from a light of that probability, from which the light may be sought; `None` where what
+    /// packets find is left to others.
     fn rivals(
         &mut self,
-        light: usize,
-        probability: f64,
+        (light, probability): (usize, f64),
         point: &SurfacePoint,
         back: DVec3,
         distance: f64,
-        material: &dyn Material,
+        sought: bool,
     ) -> Option<Rivals> {
         let source = &self.scene.lights()[light];
         let density = probability * source.emission_density(point.position, back, distance);
@@ -277,42 +356,65 @@ impl<'a> PacketTracer<'a> {
         let towards = source.pdf_towards(point.position, back);
         // Nothing but being sought finds a light of no extent, whose directions have no density.
         let (meets, per_solid_angle) = if towards > 0.0 { (1.0, towards) } else { (0.0, 1.0) };
-        let seeks = if material.is_delta() {
-            0.0
-        } else {
+        let seeks = if sought {
             self.choice.prepare(self.scene.lights(), point.position);
             self.choice.probability(light) * per_solid_angle
+        } else {
+            0.0
         };
         let squared = |p: f64| (p / density) * (p / density);
         Some(Rivals { meets: squared(meets), seeks: squared(seeks) })
     }
 
-    /// Adds what the camera sees of the packet at a vertex.
+    /// Adds what the target sees of the packet at a vertex.
     fn connect(&mut self, vertex: &Vertex<'_>, rivals: Rivals, sampler: &mut Sampler, splats: &mut Splats) {
         let point = &vertex.point;
-        let lens = if self.camera.has_lens() { sampler.four() } else { [0.5; 4] };
-        let Some(shown) = self.camera.show(point.position, [lens[0], lens[1]]) else { return };
-        let direction = -shown.direction;
+        let lens = if self.target.has_lens() { sampler.four() } else { [0.5; 4] };
+        let Some(view) = self.target.view(point.position, [lens[0], lens[1]]) else { return };
+        let direction = -view.direction;
         let outgoing = vertex.frame.local(direction);
         vertex.material.evaluate(vertex.arriving, outgoing, Transport::Radiance, &mut self.value);
         if self.value.iter().zip(&self.flux).all(|(v, f)| v * f == 0.0) {
             return;
         }
         let ray = Ray { origin: point.origin_towards(direction), direction };
-        if self.scene.surfaces().is_occluded(&ray, shown.distance, None) {
+        if self.scene.surfaces().is_occluded(&ray, view.distance, None) {
             return;
         }
-        let pixels_per_area = self.camera.pixels_per_solid_angle(shown.direction) / shown.distance / shown.distance;
-        let lens_density = pixels_per_area / self.camera.pixels();
         let met = rivals.after(vertex.material.pdf(outgoing, vertex.arriving, vertex.hero), 1.0).meets;
-        let weight = 1.0 / (1.0 + lens_density * lens_density * met);
-        let factor = weight * vertex.shading * direction.dot(point.normal).abs() * pixels_per_area;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-        let pixel = shown.y as usize * self.camera.width() as usize + shown.x as usize;
-        let splat = splats.of(pixel, self.flux.len());
-        let (alone, probability) = (self.fluoresced && !self.split, self.probability_of_hero());
-        if alone {
-            splat[self.hero] += factor * self.flux[self.hero] * self.value[self.hero] / probability;
+        let weight = 1.0 / (1.0 + view.density * view.density * met);
+        let factor = weight * vertex.shading * direction.dot(point.normal).abs() * view.response;
+        self.bring(factor, splats.of(view.pixel, self.flux.len()));
+    }
+
+    /// Adds the packet where it lands on the outside of a meter's shape, which its next edge reaches within `reach` metres.
+    fn land(
+        &mut self,
+        shape: &dyn Shape,
+        ray: &Ray,
+        reach: f64,
+        rivals: Option<Rivals>,
+        light: (usize, f64),
+        splats: &mut Splats,
+    ) {
+        let Some(crossing) = shape.cross(ray, 0.0, reach) else { return };
+        let (point, back) = (shape.surface(ray, &crossing), -ray.direction);
+        let cos = back.dot(point.normal);
+        if cos <= 0.0 {
+            return;
+        }
+        let Some(rivals) = rivals.or_else(|| self.rivals(light, &point, back, crossing.t, true)) else { return };
+        let own = Response::Planar.pdf(DVec3::new(0.0, 0.0, cos));
+        let weight = 1.0 / (1.0 + rivals.after(own, shape.area() * cos).meets);
+        self.value.fill(1.0);
+        self.bring(weight / shape.area(), splats.of(0, self.flux.len()));
+    }
+
+    /// Adds `factor` times flux and value to the bands in which they are seen.
+    fn bring(&self, factor: f64, splat: &mut [f64]) {
+        if self.fluoresced && !self.split {
+            let hero = self.hero;
+            splat[hero] += factor * self.flux[hero] * self.value[hero] / self.probability_of_hero();
         } else {
             splat.iter_mut().zip(&self.flux).zip(&self.value).for_each(|((s, f), v)| *s += factor * f * v);
         }

@@ -4,8 +4,11 @@
 //! ```text
 //! L ≈ Σ_k T_k [ Σ_s w_s f_s L_s |cosθ| / p_s ],    T_k = Π f_s |cosθ| / (p q)
 //! w_s = p_s² / Σ p²        power heuristic of multiple importance sampling
-//! q = min(1, max_b T_b)    probability of going on (Russian roulette)
+//! q = min(1, n² max_b T_b)    probability of going on (Russian roulette)
 //! ```
+//!
+//! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
+//! the path leaves the glass and says nothing about what the path is worth.
 //!
 //! With [`Follow::Specular`] it is the ray tracing of T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23 (1980).
 //!
@@ -85,8 +88,10 @@ pub struct PathTracer<'a> {
     /// Searches along a ray so far.
     searches: u64,
     /// The solid angle that the picture would have if all of its pixels were as large as the one that the path starts from, sr; 0 where no
-    /// packet competes.
+    /// packet competes. Of a meter at a point: the inverse of the density of the path's first direction.
     picture_sr: f64,
+    /// Packets land on the meter that the path starts from, so that they compete from its first edge on.
+    lands: bool,
 }
 
 /// Where the path stands before its next edge.
@@ -101,6 +106,15 @@ struct Edge {
     rival: f64,
     /// |cosθ| at its start where that is a diffuse surface that virtual lights were drawn for, else 0.
     shared: f64,
+    /// n² of the medium that it is in, over that where the path began.
+    index_squared: f64,
+}
+
+impl Edge {
+    /// The first of a path.
+    fn first(ray: Ray, pdf: Option<f64>, from: DVec3) -> Self {
+        Self { ray, pdf, from, rival: 0.0, shared: 0.0, index_squared: 1.0 }
+    }
 }
 
 impl<'a> PathTracer<'a> {
@@ -128,10 +142,11 @@ impl<'a> PathTracer<'a> {
             virtual_lights: None,
             searches: 0,
             picture_sr: 0.0,
+            lands: false,
         }
     }
 
-    /// The same, for pictures to which packets of flux add what they find: see [`super::bidirectional`].
+    /// The same, for pictures and readings to which packets of flux add what they find: see [`super::bidirectional`].
     #[must_use]
     pub fn beside(self, packets: &'a Shares) -> Self {
         Self { packets: Some(packets), ..self }
@@ -166,13 +181,23 @@ impl<'a> PathTracer<'a> {
     pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
         self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
-        self.follow(Edge { ray, pdf: None, from: ray.origin, rival: 0.0, shared: 0.0 }, sampler);
+        self.follow(Edge::first(ray, None, ray.origin), sampler);
         &self.radiance
     }
 
-    /// One sample of ∫ R(ω) L(ω) dω at a point whose frame is turned to the instrument's axis, per band.
-    pub fn reading(&mut self, point: &SurfacePoint, response: &Response, sampler: &mut Sampler) -> &[f64] {
+    /// One sample of ∫ R(ω) L(ω) dω at a point whose frame is turned to the instrument's axis, per band. Beside packets: the part that
+    /// they leave to it, where they land all over an area of `area_m2` that the point is drawn from, or, of 0, are connected with the point.
+    pub fn reading(
+        &mut self,
+        point: &SurfacePoint,
+        response: &Response,
+        area_m2: f64,
+        sampler: &mut Sampler,
+    ) -> &[f64] {
         self.start(sampler);
+        self.lands = self.packets.is_some() && area_m2 > 0.0;
+        let landing = if self.lands { area_m2 } else { 0.0 };
+        let landing = |local: DVec3| landing * local.z.max(0.0);
         let frame = Frame::of(point.normal, point.tangent);
         let [u0, u1, u2, u3] = sampler.four();
         if response.seeks_lights() {
@@ -182,7 +207,7 @@ impl<'a> PathTracer<'a> {
                 [u0, u1, u2, u3],
                 |local, value| {
                     value.fill(response.weight(local));
-                    [response.pdf(local), 0.0]
+                    [response.pdf(local), landing(local)]
                 },
                 &frame,
             );
@@ -192,9 +217,10 @@ impl<'a> PathTracer<'a> {
         self.throughput.fill(weight);
         let direction = frame.world(local);
         let ray = Ray { origin: point.origin_towards(direction), direction };
-        let pdf = response.seeks_lights().then(|| response.pdf(local));
-        self.picture_sr = 0.0;
-        self.follow(Edge { ray, pdf, from: point.position, rival: 0.0, shared: 0.0 }, sampler);
+        let own = response.pdf(local);
+        self.picture_sr = if self.packets.is_some() && !self.lands { 1.0 / own } else { 0.0 };
+        let first = Edge::first(ray, response.seeks_lights().then_some(own), point.position);
+        self.follow(Edge { rival: landing(local) / own, ..first }, sampler);
         &self.radiance
     }
 
@@ -203,6 +229,7 @@ impl<'a> PathTracer<'a> {
         self.radiance.fill(0.0);
         self.polarisation.clear();
         self.seen = None;
+        self.lands = false;
         self.choose_hero(sampler);
     }
 
@@ -311,14 +338,16 @@ impl<'a> PathTracer<'a> {
         }
         let hero = self.hero;
         let seek = !material.is_delta();
-        let rival = match count {
+        // From the first vertex a packet is connected with the lens, unless it lands on a meter as on any surface.
+        let connected = count == 1 && !self.lands;
+        let rival = match connected {
             // Packets do not come to the lens straight from a mirror or from glass.
-            1 if seek => self.picture_sr * edge.from.distance_squared(point.position),
-            1 => 0.0,
-            _ => edge.rival,
+            true if seek => self.picture_sr * edge.from.distance_squared(point.position),
+            true => 0.0,
+            false => edge.rival,
         };
-        // How a packet that comes from `incident` is sent on the way that the path came; from the first vertex it is sent to the lens.
-        let sent = |incident| if count > 1 && rival > 0.0 { material.pdf(incident, outgoing, hero) } else { 1.0 };
+        // How a packet that comes from `incident` is sent on the way that the path came.
+        let sent = |incident| if !connected && rival > 0.0 { material.pdf(incident, outgoing, hero) } else { 1.0 };
         if seek {
             self.choice.prepare(self.scene.lights(), point.position);
             // Where the path ends here, no other strategy competes with the light's own.
@@ -355,7 +384,8 @@ impl<'a> PathTracer<'a> {
         if drawn.split {
             self.split();
         }
-        let strength = self.throughput.iter().copied().fold(0.0, f64::max);
+        let index_squared = edge.index_squared * drawn.eta * drawn.eta;
+        let strength = index_squared * self.throughput.iter().copied().fold(0.0, f64::max);
         if count >= self.limits.roulette_from && strength < 1.0 {
             if u3 >= strength {
                 return None;
@@ -368,17 +398,13 @@ impl<'a> PathTracer<'a> {
         let ray = Ray { origin: point.origin_towards(direction), direction };
         let rival = match drawn.delta {
             // Either way of a Dirac lobe is as probable as the other.
-            true => {
-                if count > 1 {
-                    rival
-                } else {
-                    0.0
-                }
-            }
+            true if connected => 0.0,
+            true => rival,
             false => rival * sent(drawn.direction) / drawn.pdf,
         };
+        let pdf = (seek && !drawn.delta).then_some(drawn.pdf);
         let shared = if shares { drawn.direction.z.abs() } else { 0.0 };
-        Some(Edge { ray, pdf: (seek && !drawn.delta).then_some(drawn.pdf), from: point.position, rival, shared })
+        Some(Edge { ray, pdf, from: point.position, rival, shared, index_squared })
     }
 
     /// The density with which packets find a path whose last edge leads from `from` to a light, over that of the path's own way, given

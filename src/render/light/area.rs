@@ -41,6 +41,15 @@ impl AreaLight {
 }
 
 impl Light for AreaLight {
+    fn can_reach(&self, bounds: &Bounds) -> bool {
+        let both = self.emission.is_two_sided() || self.emission.lamp().is_some();
+        self.brightness > 0.0
+            && self.shape.facing().filter(|_| !both).is_none_or(|normal| {
+                let anchor = self.shape.sample_area([0.5; 3]).position;
+                bounds.reach_before(anchor, normal)
+            })
+    }
+
     fn sample_towards(&self, from: DVec3, u: [f64; 3], arriving: &mut [f64]) -> Option<Towards> {
         let mut towards = self.shape.sample_towards(from, u)?;
         let normal = if let Some(normal) = self.shape.facing() {

@@ -37,6 +37,7 @@ use glam::DVec3;
 pub mod area;
 
 use super::ray::{Ray, Towards};
+use super::shape::Bounds;
 
 /// A light without a surface. All slices have one element per band.
 pub trait Light: std::fmt::Debug + Send + Sync {
@@ -75,6 +76,12 @@ pub trait Light: std::fmt::Debug + Send + Sync {
     /// A bound on the irradiance that it can make on a surface near `from`, summed over the bands, to choose between lights; any
     /// positive figure is right (infinite at a point light itself), a close one makes less noise.
     fn importance(&self, from: DVec3) -> f64;
+
+    /// Whether any of its light may come to a point of a box, whatever stands between; `true` where that is not known.
+    fn can_reach(&self, bounds: &Bounds) -> bool {
+        let _ = bounds;
+        true
+    }
 
     /// Whether it reaches every point from one direction, so that what arrives is known in closed form and none has to be drawn.
     fn is_one_direction(&self) -> bool {

@@ -18,6 +18,7 @@ use super::{Error, Light, near_bound, placed, sound, unit, way, within, write};
 use crate::geometry::direction::tangents;
 use crate::math::sampling::{cone, cosine_hemisphere};
 use crate::render::ray::{Ray, Towards};
+use crate::render::shape::Bounds;
 
 /// How the intensity falls off the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +91,11 @@ impl Spot {
 }
 
 impl Light for Spot {
+    fn can_reach(&self, bounds: &Bounds) -> bool {
+        // A cone of more than a half space reaches behind.
+        self.depth > 1.0 || bounds.reach_before(self.position, self.axis)
+    }
+
     fn sample_towards(&self, from: DVec3, _: [f64; 3], arriving: &mut [f64]) -> Option<Towards> {
         let (direction, distance, inverse_square) = way(from, self.position)?;
         let relative = self.relative(-direction);

@@ -123,9 +123,10 @@ impl Material for Dielectric {
         if reflects {
             weights.iter_mut().for_each(|w| *w /= share);
             let direction = DVec3::new(-outgoing.x, -outgoing.y, outgoing.z);
-            return Some(Scattered { direction, pdf: share, delta: true, split: false });
+            return Some(Scattered { direction, pdf: share, delta: true, split: false, eta: 1.0 });
         }
-        let direction = refracted(outgoing, self.interface.relative(hero, outgoing))?;
+        let eta = self.interface.relative(hero, outgoing);
+        let direction = refracted(outgoing, eta)?;
         for (band, weight) in weights.iter_mut().enumerate() {
             if self.interface.disperses && band != hero {
                 *weight = 0.0;
@@ -133,7 +134,7 @@ impl Material for Dielectric {
             }
             *weight = (1.0 - *weight) / (1.0 - share) * scaling(self.interface.relative(band, outgoing), transport);
         }
-        Some(Scattered { direction, pdf: 1.0 - share, delta: true, split: self.interface.disperses })
+        Some(Scattered { direction, pdf: 1.0 - share, delta: true, split: self.interface.disperses, eta })
     }
 
     fn pdf(&self, _: DVec3, _: DVec3, _: usize) -> f64 {

@@ -118,7 +118,8 @@ impl Material for Fluorescent {
             return None;
         }
         weights.fill(1.0);
-        Some(Scattered { direction, pdf: sampling::cosine_hemisphere_pdf(up.z), delta: false, split: false })
+        let pdf = sampling::cosine_hemisphere_pdf(up.z);
+        Some(Scattered { direction, pdf, delta: false, split: false, eta: 1.0 })
     }
 
     fn nature(&self) -> Nature {

@@ -36,6 +36,8 @@ pub struct Scattered {
     pub delta: bool,
     /// The draw holds for one band only (its direction depends on the wavelength): the weights of the others are 0.
     pub split: bool,
+    /// n of the medium that the direction leads into over n of the one that ω_o is in: 1 where both are on the same side.
+    pub eta: f64,
 }
 
 /// What a material asks of the model of light beyond a colour for every pair of directions.

@@ -66,7 +66,7 @@ impl Material for Opaque {
         }
         let drawn = self.brdf.sample(if below { flipped(outgoing) } else { outgoing }, u, weights)?;
         let direction = if below { flipped(drawn.incident) } else { drawn.incident };
-        Some(Scattered { direction, pdf: drawn.pdf, delta: drawn.delta, split: false })
+        Some(Scattered { direction, pdf: drawn.pdf, delta: drawn.delta, split: false, eta: 1.0 })
     }
 
     fn pdf(&self, outgoing: DVec3, incident: DVec3, _hero: usize) -> f64 {

@@ -279,7 +279,9 @@ impl Material for RoughDielectric {
         for (band, weight) in weights.iter_mut().enumerate() {
             *weight = if splits && band != hero { 0.0 } else { *weight * direction.z.abs() / pdf };
         }
-        Some(Scattered { direction, pdf, delta: false, split: splits })
+        let through = direction.z * outgoing.z < 0.0;
+        let eta = if through { self.interface.relative(hero, outgoing) } else { 1.0 };
+        Some(Scattered { direction, pdf, delta: false, split: splits, eta })
     }
 
     fn pdf(&self, outgoing: DVec3, incident: DVec3, hero: usize) -> f64 {

@@ -94,7 +94,7 @@ impl Material for ThinSlab {
         let (lobe, pdf) = if reflects { (0, share) } else { (1, 1.0 - share) };
         weights.iter_mut().zip(&self.bands).for_each(|(w, band)| *w = Self::both(*band, cos)[lobe].mean() / pdf);
         let direction = if reflects { DVec3::new(-outgoing.x, -outgoing.y, outgoing.z) } else { -outgoing };
-        Some(Scattered { direction, pdf, delta: true, split: false })
+        Some(Scattered { direction, pdf, delta: true, split: false, eta: 1.0 })
     }
 
     fn pdf(&self, _: DVec3, _: DVec3, _: usize) -> f64 {

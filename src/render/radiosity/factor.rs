@@ -42,6 +42,9 @@ fn sides(a: &Patch, b: &Patch) -> [bool; 2] {
 
 /// What the patches exchange; `None` where neither sees the other.
 pub(super) fn exchange(scene: &Scene, a: &Patch, b: &Patch) -> Option<Exchange> {
+    if a.hidden && b.hidden {
+        return None;
+    }
     let (ahead, behind) = (sides(a, b), sides(b, a));
     if ahead == [false; 2] || behind == [false; 2] {
         return None;

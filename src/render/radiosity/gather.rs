@@ -8,7 +8,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::lights::spread;
 use super::patches::{Node, Patch};
-use super::{Reflection, Solution, factor};
+use super::reflection::Reflection;
+use super::{Solution, factor};
 use crate::render::integrator::frame::Frame;
 use crate::render::measure::{Meter, Place};
 use crate::render::ray::{Ray, SurfacePoint};

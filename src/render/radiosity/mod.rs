@@ -10,8 +10,9 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `patches` | surfaces cut into patches |
-//! | `factor` | what two patches exchange |
+//! | `patches`, `cut` | surfaces cut into patches, and those where others meet them |
+//! | `factor`, `links` | what two patches exchange, and all of them |
+//! | `reflection` | what elements make of the light that they receive |
 //! | `lights` | light that was not reflected yet |
 //! | [`gather`] | what meters and cameras see of the solution |
 //! | [`picture`] | a camera's picture |
@@ -26,23 +27,25 @@
 //! SIGGRAPH 1984; D. R. Baum, H. E. Rushmeier, J. M. Winget, *Improving Radiosity Solutions Through the Use of Analytically Determined
 //! Form-Factors*, SIGGRAPH 1989.
 
+mod cut;
 mod factor;
 pub mod gather;
 mod lights;
+mod links;
 mod patches;
 pub mod picture;
+mod reflection;
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
 use rayon::prelude::*;
 
-use super::material::{Material, Transport};
 use super::scene::Scene;
-use crate::geometry::direction;
 use lights::Lights;
 pub use patches::MOST as MOST_PATCHES;
 use patches::Patches;
+pub use reflection::diffuse;
+use reflection::{Operator, Reflection};
 
 /// How a scene is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,161 +131,6 @@ pub struct Solution<'a> {
     pub summary: Summary,
 }
 
-/// Directions in which a material is asked whether it is diffuse: polar angle and azimuth, degrees.
-const ASKED: [(f64, f64); 6] = [(3.0, 0.0), (30.0, 20.0), (30.0, 200.0), (55.0, 95.0), (75.0, 180.0), (86.0, 310.0)];
-
-/// The reflectance of a diffuse material, per band, of its outside and its inside (of what [`Material::convert`] leaves); `None` where it
-/// is not the same in all directions.
-#[must_use]
-pub fn diffuse(material: &dyn Material, bands: usize) -> Option<[Vec<f64>; 2]> {
-    if material.has_delta() || material.is_transmissive() || material.splits() {
-        return None;
-    }
-    let mut found: [Option<Vec<f64>>; 2] = [None, None];
-    let mut value = vec![0.0; bands];
-    for (side, reflectance) in found.iter_mut().enumerate() {
-        let flip = |(theta, phi): (f64, f64)| {
-            let d = direction::from_degrees(theta, phi);
-            if side == 0 { d } else { DVec3::new(d.x, d.y, -d.z) }
-        };
-        for incident in ASKED {
-            for outgoing in ASKED {
-                material.evaluate(flip(incident), flip(outgoing), Transport::Flux, &mut value);
-                value.iter_mut().for_each(|v| *v *= PI);
-                match reflectance {
-                    None => *reflectance = Some(value.clone()),
-                    Some(first) if first.iter().zip(&value).any(|(a, b)| (a - b).abs() > 1e-9) => return None,
-                    Some(_) => {}
-                }
-            }
-        }
-    }
-    let [Some(outside), Some(inside)] = found else { return None };
-    Some([outside, inside])
-}
-
-/// How the elements reflect.
-#[derive(Debug)]
-struct Reflection<'a> {
-    scene: &'a Scene,
-    /// By surface and side.
-    plain: Vec<[Vec<f64>; 2]>,
-}
-
-impl<'a> Reflection<'a> {
-    /// Of a scene whose materials are all [`diffuse`]; one that is not counts as black.
-    fn new(scene: &'a Scene) -> Self {
-        let n = scene.bands().len();
-        let of = |surface| diffuse(scene.material(surface), n).unwrap_or_else(|| [vec![0.0; n], vec![0.0; n]]);
-        Self { scene, plain: (0..scene.surfaces().shapes().len()).map(of).collect() }
-    }
-
-    /// Turns an irradiance into what leaves the surface of it, at texture coordinates `uv`.
-    fn apply(&self, surface: usize, back: bool, uv: glam::DVec2, values: &mut [f64], scratch: &mut [f64]) {
-        self.scene.material(surface).convert(uv, Transport::Flux, values, scratch);
-        multiply(values, &self.plain[surface][usize::from(back)]);
-    }
-}
-
-/// What an element makes of its irradiance, the mean over the patch.
-enum Operator {
-    /// Each band by itself.
-    Factors(Vec<f64>),
-    /// Rows of outgoing bands, columns of incident ones.
-    Matrix(Vec<f64>),
-}
-
-impl Operator {
-    /// Of a side of a patch.
-    fn new(reflection: &Reflection<'_>, patch: &patches::Patch, back: bool) -> Self {
-        let scene = reflection.scene;
-        let (n, material) = (scene.bands().len(), scene.material(patch.surface));
-        if !material.converts() {
-            return Self::Factors(reflection.plain[patch.surface][usize::from(back)].clone());
-        }
-        // A matrix takes the square of the bands for each of them: one point of the patch stands for all.
-        let nodes: &[patches::Node] = if material.nature().fluoresces { &patch.coarse[..1] } else { &patch.fine };
-        let places: Vec<_> =
-            (nodes.iter()).filter_map(|node| Some((patch.surface_point(scene, &node.spot)?.uv, node.weight))).collect();
-        let whole: f64 = places.iter().map(|p| p.1).sum();
-        let (mut value, mut scratch) = (vec![0.0; n], vec![0.0; n]);
-        // The mean of what becomes of an irradiance.
-        let mut of = |start: &dyn Fn(&mut [f64])| {
-            let mut mean = vec![0.0; n];
-            for (uv, weight) in &places {
-                start(&mut value);
-                reflection.apply(patch.surface, back, *uv, &mut value, &mut scratch);
-                mean.iter_mut().zip(&value).for_each(|(m, v)| *m += v * weight / whole);
-            }
-            mean
-        };
-        if !material.nature().fluoresces {
-            return Self::Factors(of(&|value| value.fill(1.0)));
-        }
-        let mut matrix = vec![0.0; n * n];
-        for incident in 0..n {
-            let column = of(&|value| {
-                value.fill(0.0);
-                value[incident] = 1.0;
-            });
-            column.into_iter().enumerate().for_each(|(outgoing, v)| matrix[outgoing * n + incident] = v);
-        }
-        Self::Matrix(matrix)
-    }
-
-    fn apply(&self, irradiance: &[f64], out: &mut [f64]) {
-        match self {
-            Self::Factors(factors) => {
-                out.iter_mut().zip(irradiance).zip(factors).for_each(|((o, e), f)| *o = e * f);
-            }
-            Self::Matrix(matrix) => {
-                let rows = matrix.chunks_exact(irradiance.len());
-                out.iter_mut().zip(rows).for_each(|(o, row)| *o = row.iter().zip(irradiance).map(|(m, e)| m * e).sum());
-            }
-        }
-    }
-}
-
-fn multiply(values: &mut [f64], by: &[f64]) {
-    values.iter_mut().zip(by).for_each(|(v, b)| *v *= b);
-}
-
-/// The form factors of an element to those that it sees.
-#[derive(Debug, Clone, Default)]
-struct Links {
-    elements: Vec<u32>,
-    factors: Vec<f64>,
-}
-
-/// The form factors of all elements: A_i F_ij is computed once for a pair.
-fn links(scene: &Scene, patches: &Patches) -> Vec<Links> {
-    let all = &patches.all;
-    let of = |i: usize| -> Vec<(usize, factor::Exchange)> {
-        (0..=i).filter_map(|j| Some((j, factor::exchange(scene, &all[i], &all[j])?))).collect()
-    };
-    // The later have more partners: handed out one by one.
-    let pairs: Vec<_> = (0..all.len()).into_par_iter().with_max_len(1).map(of).collect();
-    let mut links = vec![Links::default(); 2 * all.len()];
-    for (i, partners) in pairs.into_iter().enumerate() {
-        for (j, exchange) in partners {
-            for (side_i, row) in exchange.iter().enumerate() {
-                for (side_j, g) in row.iter().enumerate().filter(|(_, g)| **g > 0.0) {
-                    let mut link = |a: usize, area: f64, b: usize| {
-                        #[expect(clippy::cast_possible_truncation, reason = "twice the most patches")]
-                        links[a].elements.push(b as u32);
-                        links[a].factors.push(g / area);
-                    };
-                    link(2 * i + side_i, all[i].area, 2 * j + side_j);
-                    if i != j {
-                        link(2 * j + side_j, all[j].area, 2 * i + side_i);
-                    }
-                }
-            }
-        }
-    }
-    links
-}
-
 /// Irradiances of both sides of the patches by what is no diffuse surface.
 fn direct(scene: &Scene, patches: &Patches, lights: &Lights) -> Vec<f64> {
     /// Directions to a light of some extent from each of the sixteen nodes of a patch.
@@ -310,7 +158,7 @@ fn emitted(scene: &Scene, patches: &Patches) -> (Vec<f64>, Vec<usize>) {
     let mut emitters = Vec::new();
     for (element, values) in out.chunks_exact_mut(n).enumerate() {
         let surface = patches.all[element / 2].surface;
-        if !lights::is_diffuse_emitter(scene, surface) {
+        if !lights::is_diffuse_emitter(scene, surface) || patches.all[element / 2].hidden {
             continue;
         }
         let emission = scene.emission(surface).filter(|e| element % 2 == 0 || e.is_two_sided());
@@ -332,7 +180,7 @@ pub fn solve<'a>(scene: &'a Scene, settings: &Settings, radiant: &[f64]) -> Resu
     let n = scene.bands().len();
     let (patches, edge_m) = Patches::new(scene, settings.edge_m)?;
     let lights = Lights::new(scene);
-    let links = links(scene, &patches);
+    let links = links::links(scene, &patches);
     let direct = direct(scene, &patches, &lights);
     let (own, emitters) = emitted(scene, &patches);
     let reflection = Reflection::new(scene);
@@ -340,7 +188,11 @@ pub fn solve<'a>(scene: &'a Scene, settings: &Settings, radiant: &[f64]) -> Resu
         .into_par_iter()
         .map(|element| Operator::new(&reflection, &patches.all[element / 2], element % 2 == 1))
         .collect();
-    let area = |element: usize| patches.all[element / 2].area;
+    // What is received in the place of a hidden patch is the other's.
+    let area = |element: usize| match &patches.all[element / 2] {
+        patch if patch.hidden => 0.0,
+        patch => patch.area,
+    };
     let sums: Vec<f64> = links.iter().map(|l| l.factors.iter().sum()).collect();
     let flux = |element: usize, values: &[f64]| -> f64 {
         area(element) * values.iter().zip(radiant).map(|(v, w)| v * w).sum::<f64>()
@@ -364,7 +216,9 @@ pub fn solve<'a>(scene: &'a Scene, settings: &Settings, radiant: &[f64]) -> Resu
             let moved = gathered.iter().zip(&irradiance[range.clone()]).map(weighed).zip(radiant);
             change += area(element) * moved.map(|(d, w)| d * w).sum::<f64>();
             irradiance[range.clone()].copy_from_slice(&gathered);
-            operators[element].apply(&gathered, &mut reflected[range.clone()]);
+            if !patches.all[element / 2].hidden {
+                operators[element].apply(&gathered, &mut reflected[range.clone()]);
+            }
             let leaving = &mut exitance[range.clone()];
             leaving.iter_mut().zip(&reflected[range.clone()]).zip(&own[range]).for_each(|((m, r), o)| *m = r + o);
         }

@@ -3,6 +3,8 @@
 use glam::DVec3;
 
 use super::Error;
+use super::cut::{Occluders, cut};
+use super::lights::is_diffuse_emitter;
 use crate::render::ray::{Crossing, Ray, SurfacePoint};
 use crate::render::scene::Scene;
 use crate::render::shape::chart::{Cell, Chart, Spot};
@@ -40,6 +42,8 @@ pub(super) struct Patch {
     /// By the rules of two and of four points.
     pub coarse: Vec<Node>,
     pub fine: Vec<Node>,
+    /// Another surface in the same place is seen instead of it: it receives light and hands none on.
+    pub hidden: bool,
     /// How far rays start off it, m.
     offset: f64,
 }
@@ -50,7 +54,8 @@ struct Grid {
     face: u32,
     chart: Chart,
     counts: [usize; 2],
-    first: usize,
+    /// Where the patches of each cell begin, and the end: one, or its pieces.
+    starts: Vec<usize>,
 }
 
 /// All patches of a scene.
@@ -80,7 +85,7 @@ impl Patch {
         let (coarse, fine) = (nodes(&cell, &GAUSS2), nodes(&cell, &GAUSS4));
         // Beyond all rounding of the point and of the crossing of the surface itself, which a ray that starts here must not find.
         let offset = 1e-11 * (centre.abs().max_element() + radius);
-        Self { surface, area: cell.area(), cell, centre, radius, coarse, fine, offset }
+        Self { surface, area: cell.area(), cell, centre, radius, coarse, fine, hidden: false, offset }
     }
 
     /// The point of a node as seen from one side of the patch, for rays that leave there.
@@ -109,17 +114,35 @@ impl Patches {
         if found > MOST {
             return Err(Error::TooMany { found, edge_m: edge });
         }
+        let shining = |surface| is_diffuse_emitter(scene, surface);
+        let occluders = (charts.iter().enumerate())
+            .flat_map(|(surface, charts)| charts.iter().map(move |(_, chart)| (*chart, shining(surface))));
+        let occluders = Occluders::new(occluders);
         let (mut all, mut grids) = (Vec::with_capacity(found), Vec::with_capacity(charts.len()));
+        let mut number = 0;
         for (surface, charts) in charts.into_iter().enumerate() {
             let mut own = Vec::with_capacity(charts.len());
             for (face, chart) in charts {
-                let counts = chart.counts(edge);
-                own.push(Grid { face, chart, counts, first: all.len() });
-                all.extend(chart.cells(counts).into_iter().map(|cell| Patch::new(surface, cell)));
+                let (counts, lines) = (chart.counts(edge), occluders.lines(number, edge));
+                let mut starts = Vec::with_capacity(count(counts) + 1);
+                for cell in chart.cells(counts) {
+                    starts.push(all.len());
+                    all.extend(cut(cell, &lines).into_iter().map(|cell| {
+                        let patch = Patch::new(surface, cell);
+                        let hidden = occluders.hide(number, &patch.cell, patch.centre, patch.radius);
+                        Patch { hidden, ..patch }
+                    }));
+                }
+                starts.push(all.len());
+                own.push(Grid { face, chart, counts, starts });
+                number += 1;
             }
             grids.push(own);
         }
-        Ok((Self { all, grids }, edge))
+        match all.len() {
+            found if found > MOST => Err(Error::TooMany { found, edge_m: edge }),
+            _ => Ok((Self { all, grids }, edge)),
+        }
     }
 
     /// The patch at a crossing of a surface.
@@ -128,6 +151,8 @@ impl Patches {
         let first = grids.partition_point(|g| g.face < crossing.face);
         let own = grids[first..].iter().take_while(|g| g.face == crossing.face);
         let grid = own.min_by(|a, b| a.chart.outside(position).total_cmp(&b.chart.outside(position)))?;
-        Some(grid.first + grid.chart.index(grid.counts, position))
+        let index = grid.chart.index(grid.counts, position);
+        let outside = |patch: &usize| self.all[*patch].cell.outside(position);
+        (grid.starts[index]..grid.starts[index + 1]).min_by(|a, b| outside(a).total_cmp(&outside(b)))
     }
 }

@@ -159,6 +159,16 @@ impl Chart {
         }
     }
 
+    /// The corners, anticlockwise from outside, of what is flat and has straight edges.
+    #[must_use]
+    pub fn corners(&self) -> Option<Vec<DVec3>> {
+        match *self {
+            Self::Parallelogram { corner, edges: [a, b] } => Some(vec![corner, corner + a, corner + a + b, corner + b]),
+            Self::Triangle(corners) => Some(corners.to_vec()),
+            Self::Ring { .. } | Self::Sphere { .. } | Self::Tube { .. } => None,
+        }
+    }
+
     /// Area, m².
     #[must_use]
     pub fn area(&self) -> f64 {
@@ -200,10 +210,10 @@ impl Chart {
             let mut cells = Vec::with_capacity(m * m);
             for i in 0..m {
                 for j in 0..m - i {
-                    cells.push(Cell::new(Self::Triangle([at(i, j), at(i + 1, j), at(i, j + 1)]), [0.0; 2], [1.0; 2]));
+                    cells.push(Cell::whole(Self::Triangle([at(i, j), at(i + 1, j), at(i, j + 1)])));
                     if i + j + 1 < m {
                         let corners = [at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)];
-                        cells.push(Cell::new(Self::Triangle(corners), [0.0; 2], [1.0; 2]));
+                        cells.push(Cell::whole(Self::Triangle(corners)));
                     }
                 }
             }
@@ -247,6 +257,12 @@ fn oblique(d: DVec3, a: DVec3, b: DVec3) -> [f64; 2] {
 }
 
 impl Cell {
+    /// All of a chart.
+    #[must_use]
+    pub fn whole(chart: Chart) -> Self {
+        Self::new(chart, [0.0; 2], [1.0; 2])
+    }
+
     fn new(chart: Chart, low: [f64; 2], high: [f64; 2]) -> Self {
         let mut cell = Self { chart, low, high, area: 0.0, outline: None };
         cell.area = chart.area() * (high[0] - low[0]) * (high[1] - low[1]);
@@ -296,6 +312,12 @@ impl Cell {
         let density = if matches!(self.chart, Chart::Triangle(_)) { 2.0 * p[0] } else { 1.0 };
         let within = std::array::from_fn(|k| self.low[k] + p[k] * (self.high[k] - self.low[k]));
         (self.chart.at(within), density)
+    }
+
+    /// As [`Chart::outside`], of the chart that the cell is a part of.
+    #[must_use]
+    pub fn outside(&self, position: DVec3) -> f64 {
+        self.chart.outside(position)
     }
 
     /// The coordinates of the cell's own of a point on it.

@@ -64,6 +64,14 @@ impl Bounds {
         points.into_iter().fold(Self::EMPTY, |b, p| b.union(Self { min: p, max: p }))
     }
 
+    /// Whether a point of it lies before the plane through `anchor` that faces along `normal` (unit), by more than rounding.
+    #[must_use]
+    pub fn reach_before(&self, anchor: DVec3, normal: DVec3) -> bool {
+        let furthest = DVec3::select(normal.cmpgt(DVec3::ZERO), self.max, self.min);
+        let rounding = 8.0 * f64::EPSILON * anchor.abs().max(furthest.abs()).max_element();
+        (furthest - anchor).dot(normal) > rounding
+    }
+
     /// Whether all coordinates are finite and it holds a point.
     #[must_use]
     pub fn is_finite(&self) -> bool {

@@ -11,6 +11,10 @@
 //! is thus the mean over the cell, weighted with cosθ, as that of a detector of its size: lobes narrower than the cells are
 //! flattened, and a mirror's is spread over one cell. Light that a deep structure moves sideways out of the spot is counted; so
 //! the sample has to be wider than the spot. Lights of the scene are not used.
+//!
+//! [`bins`] makes a MERL table of what was measured.
+
+pub mod bins;
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
