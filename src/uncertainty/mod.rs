@@ -4,6 +4,7 @@
 //! - [`budget`]: what is known of the errors, read from TOML; [`table`]: the tables that it names.
 //! - [`evaluate`]: the uncertainty of every figure of a conversion, the share of each contribution, and what both ways of
 //!   propagation disagree in.
+//! - [`compare`]: differences of two measurements; [`shared`]: what of them errs together.
 //! - [`Stated`]: a standard uncertainty and an interval of 95 %, which need not lie evenly about the figure.
 //!
 //! ```
@@ -35,6 +36,7 @@ pub mod detector;
 mod measurand;
 mod model;
 mod monte_carlo;
+pub mod shared;
 pub mod table;
 
 pub use measurand::Measurand;

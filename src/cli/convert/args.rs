@@ -34,6 +34,7 @@ Examples:
   photopic convert lamp.csv --uncertainty budget.toml         (every figure with its uncertainty)
   photopic convert lamp.csv --uncertainty budget.toml --report lamp.html
   photopic convert paper.csv --illuminant D65                 (a reflectance: whiteness, tint, yellowness)
+  photopic convert lamp.csv --risk-group --cone 40mrad        (IEC 62471, of a source seen within ±40 mrad)
   cat lamp.csv | photopic convert - --csv")]
 pub(in crate::cli) struct ConvertArgs {
     /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
@@ -50,9 +51,21 @@ pub(in crate::cli) struct ConvertArgs {
     #[command(flatten)]
     pub(super) geometry: GeometryArgs,
     #[command(flatten)]
+    pub(super) safety: Safety,
+    #[command(flatten)]
     pub(super) uncertainty: UncertaintyArgs,
     #[command(flatten)]
     pub(super) output: Output,
+}
+
+/// Photobiological safety.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Photobiological safety")]
+pub(super) struct Safety {
+    /// Risk group by IEC 62471: of an irradiance at the distance that the standard asks for (500 lx for general lighting, else
+    /// 200 mm), of a radiance, or of both with --cone or --solid-angle of the source as seen, or --source with --distance.
+    #[arg(long)]
+    pub risk_group: bool,
 }
 
 /// Uncertainty.
@@ -240,7 +253,7 @@ pub(super) struct Output {
 /// What `--plot` draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum PlotKind {
-    /// All three on one sheet.
+    /// Spectrum, u′v′ diagram and colour vector graphic on one sheet.
     All,
     /// The spectrum with V(λ).
     Spectrum,
@@ -250,6 +263,8 @@ pub(super) enum PlotKind {
     ChromaticityXy,
     /// The TM-30 colour vector graphic.
     Tm30,
+    /// The melanopic illuminance beside what is recommended for the eye.
+    Melanopic,
 }
 
 /// A group of figures.
@@ -269,7 +284,7 @@ pub(super) enum Group {
     AlphaOpic,
     /// Photon numbers.
     Photon,
-    /// Blue-light and UV hazard weighting.
+    /// Blue-light, retinal thermal and UV hazard weighting.
     Hazard,
     /// RGB spaces.
     Rgb,
@@ -438,6 +453,7 @@ impl ConvertArgs {
                 shape: g.source,
                 time_s: g.time,
             },
+            risk_group: self.safety.risk_group,
             groups: self.groups(),
             level: g.scale_to.clone(),
         })
