@@ -36,6 +36,8 @@ pub struct Plan {
 pub(super) struct Weighted {
     key: &'static str,
     weights: Vec<f64>,
+    /// Of the weighting.
+    pub(super) range_nm: (f64, f64),
     covered_nm: Option<(f64, f64)>,
     complete: bool,
 }
@@ -56,7 +58,8 @@ impl Weighted {
         // Of a line spectrum nothing lies beyond its lines.
         let whole = sampling == Sampling::Lines || (first <= low && last >= high);
         let complete = whole && contract.range_nm.is_none_or(|(from, to)| from <= low && to >= high);
-        Ok(Self { key, weights, covered_nm: (covered.0 <= covered.1).then_some(covered), complete })
+        let covered_nm = (covered.0 <= covered.1).then_some(covered);
+        Ok(Self { key, weights, range_nm: (low, high), covered_nm, complete })
     }
 
     /// The weighted integral of values on the grid.

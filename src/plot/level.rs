@@ -36,7 +36,8 @@ impl LevelPanel {
     /// Height of a drawing of its own.
     pub(super) fn height(&self) -> f64 {
         let rows = 34.0 * self.figures.len() as f64 + NAME * self.references.len() as f64;
-        rows + BELOW + 2.0 * MARGIN + 36.0
+        // No picture is lower than the least side.
+        (rows + BELOW + 2.0 * MARGIN + 36.0).max(f64::from(super::SIDES.0))
     }
 
     pub(super) fn draw(&self, sheet: &mut Sheet, area: Rect) {

@@ -10,7 +10,7 @@ use crate::conversion::{Conversion, XyzScale};
 use crate::finding::Finding;
 use crate::photometry::alpha_opic::RECEPTORS;
 use crate::photometry::hazard::WEIGHTINGS;
-use crate::photometry::risk::{Assessment, Risk};
+use crate::photometry::risk::{Assessment, Hazard, Risk};
 use crate::uncertainty::{Measurand, Uncertainty};
 use crate::units::{significant, to_uncertainty};
 
@@ -131,28 +131,30 @@ fn figures(p: &Parts<'_>) -> Section {
 /// The risk group, hazard by hazard.
 fn risk(risk: &Risk) -> Option<Section> {
     let group = risk.group()?;
+    // What is read as one is not broken.
+    let whole = |text: &str| text.replace(' ', "\u{a0}").replace('/', "/\u{2060}");
+    let name = |hazard: Hazard| whole(&format!("{}, {}", hazard.symbol(), hazard.word()));
     let row = |a: &Assessment| {
-        let [exempt, one, two] = a.limits.map(|l| significant(l, 2));
+        let [exempt, one, two] = a.limits.map(super::text::limit);
         [
-            format!("{}, {}", a.hazard.symbol(), a.hazard.word()),
-            format!("{} {}", significant(a.value, 4), a.hazard.quantity().unit().replace('/', "/\u{2060}")),
-            exempt,
-            one,
-            two,
+            name(a.hazard),
+            whole(&format!("{} {}", significant(a.value, 4), a.hazard.quantity().unit())),
             a.group.word().to_owned(),
-            a.longest_s.map_or_else(|| "no limit".to_owned(), |t| format!("{} s", significant(t, 3))),
-            format!("{}–{} nm{}", a.covered_nm.0, a.covered_nm.1, if a.complete { "" } else { ", in part" }),
+            format!("{exempt} / {one} / {two}"),
+            a.longest_s.map_or_else(|| "no limit".to_owned(), |t| whole(&format!("{} s", significant(t, 3)))),
+            whole(&format!("{}–{} nm{}", a.covered_nm.0, a.covered_nm.1, if a.complete { "" } else { " in part" })),
         ]
     };
     let missing = risk.missing.iter().map(|(hazard, why)| {
-        let mut row = [const { String::new() }; 8];
-        row[0] = format!("{}, {}", hazard.symbol(), hazard.word());
+        let mut row = [const { String::new() }; 6];
+        row[0] = name(*hazard);
         row[1] = format!("not assessed: {}", why.word());
         row
     });
     let rows = risk.assessments.iter().map(row).chain(missing).collect();
-    let head = ["hazard", "value", "exempt to", "group 1 to", "group 2 to", "group", "longest exposure", "from"];
-    let bound = if risk.complete() { "" } else { " or higher: not every hazard was assessed over its whole range" };
+    let head = ["hazard", "value", "group", "exempt / 1 / 2 up to", "longest exposure", "from"];
+    let bound =
+        if risk.complete() { "" } else { ", a lower bound: not every hazard was assessed over its whole range" };
     let angle = risk.subtense_rad.map_or_else(
         || "An unknown angle of the source; the limits are those of 0.1 rad, the strictest.".to_owned(),
         |a| format!("The source subtends {} mrad.", significant(1e3 * a, 4)),

@@ -229,19 +229,25 @@ fn biology(out: &mut Lines, c: &Conversion) {
     }
 }
 
+/// A limit of a risk group, without zeros at its end.
+pub(super) fn limit(value: f64) -> String {
+    if value < 10.0 { value.to_string() } else { significant(value, 3) }
+}
+
 fn risk(out: &mut Lines, c: &Conversion) {
     let Some(risk) = &c.risk else { return };
     let Some(group) = risk.group() else { return };
     out.gap();
-    let bound = if risk.complete() { "" } else { " or higher" };
+    let bound = if risk.complete() { "" } else { ", a lower bound" };
     out.line("risk group (IEC 62471)", format!("{}{bound}", group.word()));
     for a in &risk.assessments {
-        let [exempt, one, two] = a.limits.map(|l| significant(l, 2));
-        let time = a.longest_s.map_or_else(|| "no limit".to_owned(), |t| format!("{} s", significant(t, 3)));
+        let [exempt, one, two] = a.limits.map(limit);
+        let time =
+            a.longest_s.map_or_else(|| "no limit of time".to_owned(), |t| format!("at most {} s", significant(t, 3)));
         out.line(
             &format!("  {} {}", a.hazard.symbol(), a.hazard.word()),
             format!(
-                "{} {}: {} (limits {exempt}, {one}, {two}; longest exposure {time})",
+                "{} {}: {}, {time} (exempt to {exempt}, group 1 to {one}, group 2 to {two})",
                 significant(a.value, 4),
                 a.hazard.quantity().unit(),
                 a.group.word()

@@ -104,6 +104,15 @@ pub struct Stated {
     pub expanded_95: [f64; 2],
 }
 
+impl Stated {
+    /// Of a mean with its standard error: the interval reaches `t` standard errors to either side, Student's t of 0.975 for the
+    /// degrees of freedom of the error (JCGM 100, G.3).
+    #[must_use]
+    pub fn of_mean(value: f64, standard_error: f64, t: f64) -> Self {
+        Self { standard: standard_error, expanded_95: [value - t * standard_error, value + t * standard_error] }
+    }
+}
+
 /// How a figure's stated uncertainty was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {

@@ -1,11 +1,11 @@
 //! Arguments of `convert`, and the settings they mean.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
 
-use super::measures;
+use super::{input, measures};
 use crate::cli::Failure;
 use crate::colorimetry::adaptation::Transform;
 use crate::colorimetry::{Observer, cct, chromaticity};
@@ -165,9 +165,9 @@ pub(super) struct Colour {
     /// How CCT and Duv are found: by minimising the distance to the locus, or by Ohno's table.
     #[arg(long, value_enum, default_value = "exact")]
     pub cct_method: CctArg,
-    /// Take the input as a reflectance (1 is the perfect diffuser) under this light, a source by name (D65, C, A, FL11, blackbody:2856K):
-    /// all figures are of the light reflected; under D65 and C with whiteness, tint and yellowness.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["scale_to", "white"])]
+    /// Take the input as a reflectance (1 is the perfect diffuser) under this light, a source by name (D65, C, A, FL11, blackbody:2856K)
+    /// or a spectrum file: all figures are of the light reflected; under D65 and C with whiteness, tint and yellowness.
+    #[arg(long, value_name = "SOURCE", conflicts_with_all = ["scale_to", "white"])]
     pub illuminant: Option<String>,
     /// White point x,y of dominant wavelength and purity; by default equal energy, of a reflectance its illuminant.
     #[arg(long, value_name = "X,Y", value_parser = measures::xy)]
@@ -405,11 +405,16 @@ impl ConvertArgs {
             C2Arg::Si => SecondRadiation::Si,
             C2Arg::Nbs1931 => SecondRadiation::Nbs1931,
         };
-        let light = |name: &String| {
-            let source = named::source(name, c2);
-            source
-                .map(|source| (source.name, source.spectrum))
-                .map_err(|e| Failure::Message(format!("--illuminant {name}: {e}")))
+        let light = |name: &String| -> Result<_, Failure> {
+            let refused = |why: &str| Failure::Message(format!("--illuminant {name}: {why}"));
+            if !Path::new(name).exists() {
+                let source = named::source(name, c2).map_err(|e| refused(&e.to_string()))?;
+                return Ok((source.name, source.spectrum));
+            }
+            let light = input::single(name, None, None, c2).map_err(|why| Failure::Message(why.message))?;
+            // A file is not the light that it may be called after.
+            let called = if named::is_name(name) { format!("./{name}") } else { name.clone() };
+            Ok((called, light.measured.spectrum))
         };
         Ok(Settings {
             contract: Contract { rule: i.rule.map(Into::into), range_nm: i.range },

@@ -175,15 +175,15 @@ impl Hazard {
         }
     }
 
-    /// How long an exposure to `value` may last within the exposure limit, s (within 8 h for actinic ultraviolet); `None` where it
-    /// does not end by this limit.
+    /// How long an exposure to `value` may last within the exposure limit, s; `None` where this limit does not end it (within 8 h for
+    /// actinic ultraviolet).
     #[must_use]
     pub fn longest_s(self, value: f64, subtense_rad: f64) -> Option<f64> {
         let dose = |most: f64, harmless: f64| (value > harmless).then(|| most / value);
         let long = subtense_rad.clamp(SMALL_RAD, LARGEST_RAD);
         let heat = (50e3 / (long * value)).powi(4);
         match self {
-            Self::ActinicUv => dose(30.0, 0.0),
+            Self::ActinicUv => dose(30.0, 0.001),
             Self::NearUv => dose(1e4, 10.0),
             Self::BlueLight => dose(1e6, 100.0),
             Self::BlueLightSmallSource => dose(100.0, 1.0),
@@ -313,11 +313,14 @@ impl Plan {
                 _ => (source.to_irradiance, Missing::Irradiance),
             };
             let found = weighted.evaluate(values);
-            let Some(covered_nm) = found.covered_nm.filter(|(low, high)| low < high || found.complete) else {
+            let covered = if found.complete { Some(weighted.range_nm) } else { found.covered_nm };
+            let Some(covered_nm) = covered.filter(|(low, high)| low < high) else {
                 out.missing.push((hazard, Missing::Range));
                 continue;
             };
-            let Some(factor) = factor else {
+            // Nothing stays nothing, whatever the geometry.
+            let nothing = found.complete && found.weighted == 0.0;
+            let Some(factor) = factor.or(nothing.then_some(0.0)) else {
                 out.missing.push((hazard, absent));
                 continue;
             };

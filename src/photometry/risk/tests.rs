@@ -136,9 +136,10 @@ fn what_was_not_assessed_is_said() {
         ]
     );
     assert!(!visible.complete());
-    // Lines are all there is: a single one is assessed whole.
+    // Lines are all there is: a single one is assessed whole, and ultraviolet sheds no blue light whatever the radiance.
     let both = Source { to_radiance: Some(1.0), ..source(Quantity::Irradiance, None) };
     assert!(risk(&line(555.0, 1.0), &both).complete());
+    assert!(risk(&line(254.0, 1.0), &source(Quantity::Irradiance, None)).complete());
     // A dim source in the visible is judged by its infrared too.
     let dim = Source { luminance_cd_per_m2: Some(9.0), ..both };
     assert_eq!(of(&risk(&line(940.0, 1e6), &dim), Hazard::RetinalThermalWeak).group, Group::Three);
