@@ -96,16 +96,16 @@ mod tests {
         assert_eq!(colours().len(), 6);
     }
 
-    /// ANSI C78.377 has ellipses of the same colours from another source: steps in all directions agree within 3 %, which a wrong digit
-    /// would break. Those of 2700 K are known to differ.
+    /// ANSI C78.377 has ellipses of the same colours from another source: steps in all directions agree within 1 %, what the digits of
+    /// both leave open, and at 6500 K, of which two digits are printed, within 5 %. Those of 2700 K are known to differ.
     #[test]
     fn steps_are_those_of_the_ellipses_of_ansi() {
-        for nominal_k in [3000.0, 4000.0, 5000.0, 6500.0] {
+        for (nominal_k, digits) in [(3000.0, 0.01), (4000.0, 0.01), (5000.0, 0.01), (6500.0, 0.05)] {
             let iec = colours().iter().find(|c| c.nominal_k == nominal_k).expect("both have it");
             let ansi =
                 tolerance::nominals().iter().find(|n| n.cct_k == nominal_k).and_then(|n| n.ellipse).expect("known");
             for p in ansi.outline(iec.centre_xy, 1.0) {
-                assert!((iec.sdcm(p) - 1.0).abs() < 0.03, "{nominal_k} K: {}", iec.sdcm(p));
+                assert!((iec.sdcm(p) - 1.0).abs() < digits, "{nominal_k} K: {}", iec.sdcm(p));
             }
         }
     }

@@ -81,7 +81,8 @@ impl LevelPanel {
             }
             let centre = at(figure.value);
             sheet.disc((centre, y), 5.0, ink);
-            let right = centre < 0.6 * plot.x1 + 0.4 * plot.x0;
+            let ends = figure.interval.map_or(centre, |[_, b]| at(b));
+            let right = ends + font::width(&figure.text, TICK_TEXT) + 22.0 < plot.x1;
             let beyond = figure.interval.map_or(centre, |[a, b]| at(if right { b } else { a }));
             let (start, align) = if right { (beyond + 11.0, Align::Start) } else { (beyond - 11.0, Align::End) };
             sheet.text((start, y + 0.36 * TICK_TEXT), &figure.text, TICK_TEXT, DARK, align);

@@ -132,7 +132,7 @@ fn figures(p: &Parts<'_>) -> Section {
 fn risk(risk: &Risk) -> Option<Section> {
     let group = risk.group()?;
     // What is read as one is not broken.
-    let whole = |text: &str| text.replace(' ', "\u{a0}").replace('/', "/\u{2060}");
+    let whole = |text: &str| text.replace(' ', "\u{a0}").replace('/', "/\u{2060}").replace('–', "–\u{2060}");
     let name = |hazard: Hazard| whole(&format!("{}, {}", hazard.symbol(), hazard.word()));
     let row = |a: &Assessment| {
         let [exempt, one, two] = a.limits.map(super::text::limit);

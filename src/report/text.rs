@@ -231,7 +231,7 @@ fn biology(out: &mut Lines, c: &Conversion) {
 
 /// A limit of a risk group, without zeros at its end.
 pub(super) fn limit(value: f64) -> String {
-    if value < 10.0 { value.to_string() } else { significant(value, 3) }
+    if value.fract() == 0.0 || value < 1.0 { value.to_string() } else { significant(value, 3) }
 }
 
 fn risk(out: &mut Lines, c: &Conversion) {

@@ -4,7 +4,7 @@
 //! E_n = (a − b) / √(U_a² + U_b² − 2 ρ U_a U_b)
 //! ```
 //!
-//! ISO/IEC 17043:2010, B.4.1.1, and ISO 13528:2015, 9.7, have ρ = 0: independent measurements. U are the expanded uncertainties of
+//! ISO/IEC 17043:2010, B.4.1.1, and ISO 13528:2015, have ρ = 0: independent measurements. U are the expanded uncertainties of
 //! 95 %, and where an interval is lopsided its side that faces the other value. ρ is the correlation of errors that both share (see
 //! [`super::shared`]): the uncertainty of a difference without them, by JCGM 100, 5.2. |E_n| > 1 is significant.
 

@@ -61,7 +61,11 @@ fn melanopic_illuminance_is_held_against_the_recommendations() {
         let document = json(photopic().args(["convert", "D65", "--scale-to", lux, "-q"]));
         let met =
             |when: &str| at(&document["results"][0], &format!("alpha_opic.melanopic.recommended.{when}.met")).clone();
-        assert_eq!([met("day"), met("evening"), met("night")], [day.into(), evening.into(), night.into()], "{lux}");
+        assert_eq!(
+            [met("day"), met("evening"), met("night")],
+            [day, evening, night].map(serde_json::Value::from),
+            "{lux}"
+        );
     }
     let folder = Folder::new();
     folder
