@@ -67,7 +67,7 @@ pub fn correlations(
     let evaluated = |side: Side<'_>, of: &'static str| -> Result<_, SharedError> {
         // What there is to say about the budget was said when the measurement was evaluated.
         let model = Model::new(side.budget, side.spectrum, &mut Vec::<Finding>::new())?;
-        let figures = Figures::new(converter, side.quantity, side.spectrum).map_err(Error::from)?;
+        let figures = Figures::new(converter, side.quantity, side.spectrum)?;
         let index = |name: &String| {
             model.inputs.iter().position(|i| i.name == *name).ok_or_else(|| SharedError::Unknown {
                 name: name.clone(),
