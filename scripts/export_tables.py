@@ -184,6 +184,16 @@ BLUE_LIGHT = {
     495: "0.16", 500: "0.10",
 }  # fmt: skip
 
+# R(lambda), IEC 62471:2006 Table 4.2, 380 nm to 500 nm; 1 from there to 700 nm, then formulas. Two public transcriptions
+# agree on every piece: isetcam's s_safetyHazardFunctions.m (by 5 nm to 1400 nm) and an analysis of an infrared illuminator
+# by clause 4.3.6 (values to 500 nm, formulas beyond). RTHF.csv of NorthernLoki/Horticulture_Tools is ICNIRP 2013's, which
+# has the peak at 1 and is the same from 500 to 1150 nm.
+RETINAL_THERMAL = {
+    380: "0.1", 385: "0.13", 390: "0.25", 395: "0.5", 400: "1.0", 405: "2.0", 410: "4.0", 415: "8.0", 420: "9.0",
+    425: "9.5", 430: "9.8", 435: "10.0", 440: "10.0", 445: "9.7", 450: "9.4", 455: "9.0", 460: "8.0", 465: "7.0",
+    470: "6.2", 475: "5.5", 480: "4.5", 485: "4.0", 490: "2.2", 495: "1.6", 500: "1.0",
+}  # fmt: skip
+
 # S(lambda), ICNIRP 2004 Table 1 (Health Physics 87, 171-186), the values of IEC 62471:2006 Table 4.1. Three public
 # transcriptions agree on every value: EN 62471 in isetcam's s_safetyHazardFunctions.m (from 200 nm), ICNIRP 2004 in a
 # web page's hazard-weighting.ts, and, at these wavelengths, an unlabelled 1 nm list in an app, apparently that of
@@ -276,6 +286,17 @@ def blue_light_hazard() -> Rows:
         rows[w] = [computed(10 ** ((450 - w) / 50), 15)]
     for w in range(600, 701):
         rows[w] = [Decimal("0.001")]
+    return rows
+
+
+def retinal_thermal_hazard() -> Rows:
+    rows: Rows = {}
+    for w in range(380, 501):
+        low, high, share = between(RETINAL_THERMAL, w)
+        rows[w] = [low + (high - low) * share]
+    for w in range(501, 1401):
+        rows[w] = [Decimal(1) if w <= 700 else computed(10 ** ((700 - w) / 500), 15) if w < 1050 else Decimal("0.2") if w <= 1150
+                   else computed(0.2 * 10 ** (0.02 * (1150 - w)), 15) if w < 1200 else Decimal("0.02")]
     return rows
 
 
@@ -829,6 +850,23 @@ def tables() -> list[Table]:
         note="ICNIRP 2013 prints 0.0125 at 385 nm. Printed 1 at 435 and 440 nm. luxpy extrapolates below 380 nm to zero; the standard "
              "has 0.01 down to 300 nm. For the aphakic eye another function applies."))
 
+    table = "IEC 62471:2006 Table 4.2"
+    out.append(Table(
+        name="icnirp-retinal-thermal-hazard", aliases=["retinal-thermal-hazard", "burn-hazard", "r-lambda"], file="icnirp/retinal_thermal_hazard.csv",
+        title="Retinal thermal (burn) hazard weighting function R(lambda)",
+        standard="IEC 62471:2006 / CIE S 009:2002 Table 4.2", doi="10.1097/HP.0b013e318289a611",
+        reference="ICNIRP 2013, Guidelines on limits of exposure to incoherent visible and infrared radiation, Health Physics 105, 74-96, Table 2",
+        origin="values of IEC 62471:2006 Table 4.2 to 500 nm with straight lines between them; 1 from 500 to 700 nm; 10^((700 - lambda)/500) from 700 to "
+               "1050 nm; 0.2 from 1050 to 1150 nm; 0.2*10^(0.02(1150 - lambda)) from 1150 to 1200 nm; 0.02 from 1200 to 1400 nm",
+        checked="two public transcriptions of the standard agree on every piece; the values to 495 nm are ten times those of B(lambda)",
+        licence=FACTS, rows=retinal_thermal_hazard(), columns=[Column("R", "1", "retinal thermal hazard weight")],
+        spots=[Spot(380, "R", "0.1", table), Spot(385, "R", "0.13", table), Spot(435, "R", "10", table), Spot(450, "R", "9.4", table),
+               Spot(495, "R", "1.6", table), Spot(500, "R", "1", table), Spot(700, "R", "1", table),
+               Spot(850, "R", "0.501187233627272", "isetcam, s_safetyHazardFunctions.m"), Spot(1175, "R", "0.0632455532033676", "isetcam, s_safetyHazardFunctions.m"),
+               Spot(1400, "R", "0.02", table)],
+        note="Printed 10 at 435 and 440 nm. ICNIRP 2013 divides the values up to 430 nm by ten and has 1 from there to 700 nm, with other limits; "
+             "those of IEC 62471 and Directive 2006/25/EC go with this table."))
+
     uv = actinic_uv_hazard()
     for w, (x,) in uv.items():  # ICNIRP 2004, equations 2a to 2c, which are approximate
         if w >= 210:
@@ -964,13 +1002,27 @@ LOOKUPS = [
         "title": "Chromaticity quadrangles of white LED products, their centres, and one-step MacAdam ellipses",
         "standard": "ANSI C78.377-2008 Table 1 and Annex; the ellipses as lamp specifications of the ENERGY STAR programme print them for three steps",
         "origin": "the digits of two public programs that agree in all 80 numbers of the quadrangles and centres common to both (a Python chromaticity plot and the LED binning of the Nimble library); the ellipses of one (a tolerance calculation for tunable white)",
-        "checked": "every corner has the colour temperature and Duv of the standard's definition (nominal temperature and tolerance, Duv of the target plus or minus 0.006) within its printed digits; the ellipses have one source and no check",
+        "checked": "every corner has the colour temperature and Duv of the standard's definition (nominal temperature and tolerance, Duv of the target plus or minus 0.006) within its printed digits; the ellipses of 3000, 4000 and 5000 K agree with those of IEC 60081 within 1 %, that of 6500 K within 5 %, that of 2700 K has one source and no check",
         "licence": "published values, none stated",
         "date": "2026-11-26",
         "sha256": "3f5f8a4c11eab854654cc3d8c128c7519553c41455128ff1f894cf330de01574",
         "rows": "one nominal correlated colour temperature each, K",
         "columns": "centre x, y; corners x1, y1 to x4, y4 in order round the quadrangle; of the ellipse of one step half the long and the short axis in x, y, and the angle of the long axis to x in degrees",
-        "note": "No ellipse could be had for 3500, 4500 and 5700 K; those of IEC 60081 (g11, g12, g22) could not be had at all.",
+        "note": "No ellipse could be had for 3500, 4500 and 5700 K.",
+    },
+    {
+        "name": "iec-60081",
+        "file": "iec/60081.csv",
+        "title": "Standard colours of fluorescent lamps F 2700 to F 6500 and the metric of their MacAdam steps",
+        "standard": "IEC 60081 Annex D",
+        "origin": "a public program that calculates steps (Python, function sdcm_cal), which has F 8000 too",
+        "checked": "the colour temperatures and centres as a manufacturer's page prints them, equal; the metric of F 3000, F 4000 and F 5000 against the ellipses of ANSI C78.377 from another source, within 1 %, of F 6500 within 5 %",
+        "licence": "published values, none stated",
+        "date": "2026-11-26",
+        "sha256": "de7bcfb9bdad35740b83023178c539ec525eeef4e8db704cdc104921ef9817ae",
+        "rows": "one standard colour each: correlated colour temperature, K, and the number it is called by",
+        "columns": "centre x, y; g11, g12, g22 of one step",
+        "note": "The standard itself could not be had. The metric of F 2700 and F 3500 has one source.",
     },
 ]
 

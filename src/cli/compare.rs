@@ -14,8 +14,9 @@ use crate::conversion::{Converter, Settings};
 use crate::finding::{Finding, Location};
 use crate::report::compare as report;
 use crate::report::envelope::Envelope;
-use crate::spectrum::Quantity;
-use crate::uncertainty::{self, Uncertainty, compare};
+use crate::spectrum::{Quantity, Spectrum};
+use crate::uncertainty::budget::Budget;
+use crate::uncertainty::{self, Uncertainty, compare, shared};
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
@@ -23,10 +24,14 @@ use crate::uncertainty::{self, Uncertainty, compare};
 The difference of a figure is significant where |E_n| > 1: E_n = (a - b)/sqrt(U_a^2 + U_b^2), U being the expanded uncertainties of
 95 % (ISO/IEC 17043). Of many figures one in twenty may be so by chance: choose beforehand with --figure.
 
+Two measurements with one instrument share errors, of its calibration above all, which cancel in the difference in part: name them
+with --shared, and -2 r U_a U_b is added under the root, r being the correlation of the figures' errors to first order.
+
 Examples:
   photopic compare here.csv there.csv --uncertainty budget.toml
   photopic compare here.csv there.csv --uncertainty here.toml --uncertainty there.toml --json
-  photopic compare here.csv there.csv --uncertainty budget.toml --figure cct_k --figure cri_ra")]
+  photopic compare here.csv there.csv --uncertainty budget.toml --figure cct_k --figure cri_ra
+  photopic compare before.csv after.csv --uncertainty budget.toml --shared 'certificate of the lamp' --shared 'wavelength offset'")]
 pub(super) struct CompareArgs {
     /// A spectrum: a file, `-`, or a source by name.
     #[arg(value_name = "A")]
@@ -46,6 +51,9 @@ pub(super) struct CompareArgs {
     /// Compare only this figure, by its JSON key, such as photopic.illuminance_lx or cct_k (repeatable).
     #[arg(long, value_name = "KEY")]
     figure: Vec<String>,
+    /// A contribution, by its name in the budgets, of which A and B have one and the same error (repeatable).
+    #[arg(long, value_name = "NAME")]
+    shared: Vec<String>,
     /// One JSON document.
     #[arg(long, conflicts_with = "csv")]
     json: bool,
@@ -55,6 +63,25 @@ pub(super) struct CompareArgs {
     /// Write to a file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+}
+
+/// One of the two measurements with what it is worth.
+struct Evaluated {
+    budget: Budget,
+    quantity: Quantity,
+    spectrum: Spectrum,
+    uncertainty: Uncertainty,
+}
+
+impl Evaluated {
+    fn side(&self) -> shared::Side<'_> {
+        shared::Side {
+            budget: &self.budget,
+            quantity: self.quantity,
+            spectrum: &self.spectrum,
+            uncertainty: &self.uncertainty,
+        }
+    }
 }
 
 pub(super) fn run(arguments: &CompareArgs, talk: Talk) -> Result<(), Failure> {
@@ -68,9 +95,9 @@ pub(super) fn run(arguments: &CompareArgs, talk: Talk) -> Result<(), Failure> {
     let converter = Converter::new(Settings::default());
     let mut sink = Sink::open(arguments.output.as_deref(), &inputs)?;
     let mut notes = Notes::new(&inputs, talk);
-    let settings = json!({"figures": arguments.figure, "coverage": 0.95});
+    let settings = json!({"figures": arguments.figure, "shared": arguments.shared, "coverage": 0.95});
     let mut envelope = Envelope::begin(Vec::new(), "compare", &settings)?;
-    let mut measured: Vec<(Quantity, Uncertainty)> = Vec::new();
+    let mut measured: Vec<Evaluated> = Vec::new();
     for (i, path) in inputs.iter().enumerate() {
         let of = |all: usize| i.min(all - 1);
         let budget = budget::read(&arguments.budgets[of(arguments.budgets.len())])?;
@@ -84,14 +111,19 @@ pub(super) fn run(arguments: &CompareArgs, talk: Talk) -> Result<(), Failure> {
             }
         };
         envelope.input(found.input);
-        let (quantity, spectrum) = (found.measured.quantity, &found.measured.spectrum);
+        let (quantity, spectrum) = (found.measured.quantity, found.measured.spectrum);
         let budget = budget.with_column(spectrum.grid(), found.measured.standard.as_deref());
         let mut findings = found.findings;
-        match uncertainty::evaluate(&converter, &budget, quantity, spectrum) {
+        match uncertainty::evaluate(&converter, &budget, quantity, &spectrum) {
             Ok(checked) => {
                 let place = |f: Finding| f.at(Location::default().in_file(path));
                 findings.extend(checked.findings.into_iter().map(place));
-                measured.push((quantity, checked.value));
+                measured.push(Evaluated {
+                    budget: budget.into_owned(),
+                    quantity,
+                    spectrum,
+                    uncertainty: checked.value,
+                });
             }
             Err(why) => {
                 notes.refuse(&format!("{path}: {why}"));
@@ -103,13 +135,20 @@ pub(super) fn run(arguments: &CompareArgs, talk: Talk) -> Result<(), Failure> {
     }
     let mut plain = String::new();
     let mut passes = true;
-    if let [(quantity, a), (other, b)] = &measured[..] {
-        if quantity != other {
-            let message =
-                format!("{quantity} beside {other}; expected two measurements of one quantity, see --quantity");
+    if let [a, b] = &measured[..] {
+        if a.quantity != b.quantity {
+            let (one, other) = (a.quantity, b.quantity);
+            let message = format!("{one} beside {other}; expected two measurements of one quantity, see --quantity");
             return Err(Failure::Message(message));
         }
-        let mut all = report::keyed(&compare::differences(a, b), *quantity);
+        let correlations = if arguments.shared.is_empty() {
+            Vec::new()
+        } else {
+            shared::correlations(&converter, a.side(), b.side(), &arguments.shared)
+                .map_err(|e| Failure::Message(format!("--shared: {e}")))?
+        };
+        let differences = compare::differences(&a.uncertainty, &b.uncertainty, &correlations);
+        let mut all = report::keyed(&differences, a.quantity);
         if let Some(unknown) = arguments.figure.iter().find(|key| all.iter().all(|(k, _)| k != *key)) {
             let some: Vec<&str> = all.iter().take(12).map(|(k, _)| k.as_str()).collect();
             let message = format!("--figure {unknown}: not a figure of both; expected one of {}, …", some.join(", "));

@@ -10,6 +10,7 @@ pub mod chromaticity;
 pub mod cri;
 pub mod difference;
 pub mod dominant;
+pub mod iec_60081;
 pub mod observer;
 pub mod reference;
 pub mod rgb;

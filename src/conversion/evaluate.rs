@@ -3,10 +3,10 @@
 use super::figures::{AbsoluteFigures, Conversion, Integration, Mesopic, RgbFigure, XyzScale};
 use super::{Error, Plan, Settings, shape};
 use crate::colorimetry::whiteness::Whiteness;
-use crate::colorimetry::{cct, chromaticity, cri, dominant, rgb, tolerance};
+use crate::colorimetry::{cct, chromaticity, cri, dominant, iec_60081, rgb, tolerance};
 use crate::finding::{Checked, Finding};
 use crate::photometry::luminous::Luminous;
-use crate::photometry::{alpha_opic, hazard, mesopic, photon, transfer};
+use crate::photometry::{alpha_opic, hazard, mesopic, photon, risk, transfer};
 use crate::spectrum::integrate::{Rule, dot};
 use crate::spectrum::{Quantity, Sampling, Spectrum, largest};
 use crate::units::significant;
@@ -86,6 +86,7 @@ pub(super) fn evaluate(
         uv_prime: coloured.and_then(chromaticity::uv_prime),
         cct: None,
         tolerance: None,
+        standard_colour: None,
         whiteness: None,
         dominant: None,
         peak_wavelength_nm: None,
@@ -95,6 +96,7 @@ pub(super) fn evaluate(
         tm30: None,
         alpha_opic: Vec::new(),
         hazard: Vec::new(),
+        risk: None,
         photons,
         rgb: Vec::new(),
         integration,
@@ -105,7 +107,9 @@ pub(super) fn evaluate(
             Some(light) => whiteness(light.whiteness(xyz.map(|v| v * factor)), &mut out, &mut findings),
             None => {
                 let white = out.cct.filter(|c| NOMINAL_WHITE_K.contains(&c.kelvin));
-                out.tolerance = white.and(chromaticity::xy(xyz_1931)).and_then(tolerance::nearest);
+                let xy = white.and(chromaticity::xy(xyz_1931));
+                out.tolerance = xy.and_then(tolerance::nearest);
+                out.standard_colour = xy.and_then(iec_60081::nearest);
             }
         }
     }
@@ -121,6 +125,9 @@ pub(super) fn evaluate(
     }
     if let Some(plan) = &plan.hazard {
         out.hazard = hazards(plan, values, &mut findings);
+    }
+    if let Some(plan) = &plan.risk {
+        out.risk = risk_group(settings, plan, values, &out, &mut findings);
     }
     undefined_ratios(&out, lit, &luminous, &mut findings);
     if groups.shape {
@@ -381,17 +388,50 @@ fn coverage(spectrum: &Spectrum, (low, high): (f64, f64), of: &str, findings: &m
 
 fn hazards(plan: &hazard::Plan, values: &[f64], findings: &mut Vec<Finding>) -> Vec<hazard::Hazard> {
     let all: Vec<hazard::Hazard> = plan.evaluate(values).filter(|h| h.covered_nm.is_some()).collect();
-    for hazard in all.iter().filter(|h| !h.complete) {
-        let (low, high) = hazard.covered_nm.unwrap_or_default();
-        findings.push(Finding::info(
-            "P007",
-            format!(
-                "{} is weighted over {low}–{high} nm only: the spectrum does not cover the rest of its weighting",
-                hazard.key
-            ),
-        ));
+    let parts: Vec<String> = all
+        .iter()
+        .filter(|h| !h.complete)
+        .filter_map(|h| h.covered_nm.map(|(low, high)| format!("{} over {low}–{high} nm", h.key)))
+        .collect();
+    if !parts.is_empty() {
+        let message =
+            format!("weighted in part: {}; the spectrum does not cover the rest of the weighting", parts.join(", "));
+        findings.push(Finding::info("P007", message));
     }
     all
+}
+
+/// The risk group, and a word on what it does not rest on.
+fn risk_group(
+    settings: &Settings,
+    plan: &risk::Plan,
+    values: &[f64],
+    found: &Conversion,
+    findings: &mut Vec<Finding>,
+) -> Option<risk::Risk> {
+    let of = |quantity: Quantity| found.absolute.iter().find(|f| f.quantity == quantity);
+    let source = risk::Source {
+        to_irradiance: of(Quantity::Irradiance).map(|f| f.factor),
+        to_radiance: of(Quantity::Radiance).map(|f| f.factor),
+        luminance_cd_per_m2: of(Quantity::Radiance).map(|f| f.photopic),
+        subtense_rad: risk::subtense_rad(found.quantity, &settings.geometry),
+    };
+    if source.to_irradiance.is_none() && source.to_radiance.is_none() {
+        let message = "no risk group: it is one of an irradiance or a radiance, and none is known";
+        findings.push(Finding::error("P013", message));
+        return None;
+    }
+    let risk = plan.evaluate(values, &source);
+    if !risk.complete() {
+        let parts = risk.assessments.iter().filter(|a| !a.complete).map(|a| {
+            let (low, high) = a.covered_nm;
+            format!("{} over {low}–{high} nm only", a.hazard.symbol())
+        });
+        let missing = risk.missing.iter().map(|(hazard, why)| format!("{} not: {}", hazard.symbol(), why.word()));
+        let all: Vec<String> = parts.chain(missing).collect();
+        findings.push(Finding::warning("P014", format!("the risk group is a lower bound ({})", all.join("; "))));
+    }
+    Some(risk)
 }
 
 /// Peak, centroid and full width at half maximum.

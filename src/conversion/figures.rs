@@ -3,6 +3,7 @@
 use crate::colorimetry::cct::Cct;
 use crate::colorimetry::cri::Cri;
 use crate::colorimetry::dominant::Dominant;
+use crate::colorimetry::iec_60081::Steps;
 use crate::colorimetry::rgb::Colour;
 use crate::colorimetry::tm30::Tm30;
 use crate::colorimetry::tolerance::Tolerance;
@@ -11,6 +12,7 @@ use crate::photometry::alpha_opic::AlphaOpic;
 use crate::photometry::hazard::Hazard;
 use crate::photometry::mesopic::Adaptation;
 use crate::photometry::photon::Photons;
+use crate::photometry::risk::Risk;
 use crate::spectrum::Quantity;
 use crate::spectrum::integrate::{ErrorBound, Rule};
 
@@ -107,6 +109,8 @@ pub struct Conversion {
     pub cct: Option<Cct>,
     /// Where the light stands to the nearest nominal white (CIE 1931 observer); `None` without a colour temperature.
     pub tolerance: Option<Tolerance>,
+    /// Steps to the nearest standard colour of IEC 60081, likewise.
+    pub standard_colour: Option<Steps>,
     /// Whiteness, tint and yellowness of a reflectance under C or D65.
     pub whiteness: Option<Whiteness>,
     /// Dominant wavelength and purity.
@@ -125,6 +129,8 @@ pub struct Conversion {
     pub alpha_opic: Vec<AlphaOpic>,
     /// Hazard weightings; empty where not asked for.
     pub hazard: Vec<Hazard>,
+    /// Risk group, on request.
+    pub risk: Option<Risk>,
     /// Photons.
     pub photons: Option<Photons>,
     /// RGB colours; empty where not asked for or without light.

@@ -11,7 +11,7 @@ use crate::constants::SecondRadiation;
 use crate::finding::{Checked, Finding};
 use crate::photometry::luminous::{Efficacy, Efficiency};
 use crate::photometry::transfer::{self, Geometry};
-use crate::photometry::{alpha_opic, hazard, luminous, mesopic, photon};
+use crate::photometry::{alpha_opic, hazard, luminous, mesopic, photon, risk};
 use crate::spectrum::integrate::{Contract, Rule, RuleError};
 use crate::spectrum::resample::{Extrapolation, Interpolation, ResampleError, resample};
 use crate::spectrum::{Grid, Quantity, Sampling, Spectrum};
@@ -117,6 +117,8 @@ pub struct Settings {
     pub illuminant: Option<(String, Spectrum)>,
     /// Geometry that connects quantities.
     pub geometry: Geometry,
+    /// Whether to find the risk group of the source (IEC 62471).
+    pub risk_group: bool,
     /// Groups of figures.
     pub groups: Groups,
     /// Absolute level to scale the spectrum to.
@@ -139,6 +141,7 @@ impl Default for Settings {
             mesopic_adaptation: None,
             illuminant: None,
             geometry: Geometry::default(),
+            risk_group: false,
             groups: Groups::ALL,
             level: None,
         }
@@ -236,6 +239,7 @@ pub(crate) struct Plan {
     pub(crate) alpha_opic: Option<alpha_opic::Plan>,
     pub(crate) photon: Option<photon::Plan>,
     pub(crate) hazard: Option<hazard::Plan>,
+    pub(crate) risk: Option<risk::Plan>,
     /// ∫ λ S dλ for the centroid.
     pub(crate) centroid: Vec<f64>,
 }
@@ -264,6 +268,7 @@ impl Plan {
                 .transpose()?,
             photon: groups.photon.then(|| photon::Plan::new(grid, sampling, contract)).transpose()?,
             hazard: groups.hazard.then(|| hazard::Plan::new(grid, sampling, contract)).transpose()?,
+            risk: settings.risk_group.then(|| risk::Plan::new(grid, sampling, contract)).transpose()?,
             centroid: weights(crate::spectrum::integrate::Weighting::wavelength())?,
             grid: Arc::clone(grid),
             sampling,

@@ -15,6 +15,40 @@ pub const RANGE_NM: (f64, f64) = (380.0, 780.0);
 /// The receptors in the order of results; each is the name of the table's column, too.
 pub const RECEPTORS: [&str; 5] = ["s_cone_opic", "m_cone_opic", "l_cone_opic", "rhodopic", "melanopic"];
 
+/// Recommended melanopic equivalent daylight illuminance at the eye of healthy adults, measured vertically at about 1.2 m
+/// (Brown et al. 2022, PLoS Biology 20(3), e3001571).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recommendation {
+    /// Key in the results.
+    pub when: &'static str,
+    /// The recommendation in words.
+    pub word: &'static str,
+    /// The bound, lx.
+    pub bound_lx: f64,
+    /// Whether the bound is the least.
+    pub at_least: bool,
+}
+
+impl Recommendation {
+    /// Whether an illuminance keeps it.
+    #[must_use]
+    pub fn is_met(&self, edi_lx: f64) -> bool {
+        if self.at_least { edi_lx >= self.bound_lx } else { edi_lx <= self.bound_lx }
+    }
+}
+
+/// The three recommendations.
+pub const RECOMMENDATIONS: [Recommendation; 3] = [
+    Recommendation { when: "day", word: "by day at least 250 lx", bound_lx: 250.0, at_least: true },
+    Recommendation {
+        when: "evening",
+        word: "in the three hours before bed at most 10 lx",
+        bound_lx: 10.0,
+        at_least: false,
+    },
+    Recommendation { when: "night", word: "asleep at most 1 lx", bound_lx: 1.0, at_least: false },
+];
+
 /// The action of one light on one receptor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AlphaOpic {

@@ -1,14 +1,16 @@
-//! Hazard-weighted radiation: retinal blue light B(λ) and actinic ultraviolet S(λ) (IEC 62471:2006, ICNIRP).
+//! Hazard-weighted radiation: blue light B(λ) and heat R(λ) on the retina, actinic ultraviolet S(λ) (IEC 62471:2006, ICNIRP).
 
 use crate::spectrum::integrate::{self, Contract, RuleError, Weighting, dot};
 use crate::spectrum::{Grid, Sampling};
-use crate::tables;
 
 use super::luminous::single;
 
 /// The weightings: key in the results, name of the embedded table.
-pub const WEIGHTINGS: [(&str, &str); 2] =
-    [("blue_light", "icnirp-blue-light-hazard"), ("actinic_uv", "icnirp-actinic-uv-hazard")];
+pub const WEIGHTINGS: [(&str, &str); 3] = [
+    ("blue_light", "icnirp-blue-light-hazard"),
+    ("actinic_uv", "icnirp-actinic-uv-hazard"),
+    ("retinal_thermal", "icnirp-retinal-thermal-hazard"),
+];
 
 /// One hazard-weighted integral.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,43 +33,58 @@ pub struct Plan {
 
 /// One weighting on the plan's grid.
 #[derive(Debug, Clone, PartialEq)]
-struct Weighted {
+pub(super) struct Weighted {
     key: &'static str,
     weights: Vec<f64>,
+    /// Of the weighting.
+    pub(super) range_nm: (f64, f64),
     covered_nm: Option<(f64, f64)>,
     complete: bool,
 }
 
+impl Weighted {
+    /// Compiles a weighting for a grid.
+    pub(super) fn new(
+        key: &'static str,
+        weighting: &Weighting,
+        grid: &Grid,
+        sampling: Sampling,
+        contract: &Contract,
+    ) -> Result<Self, RuleError> {
+        let weights = integrate::weights(grid, sampling, weighting, contract)?;
+        let ((low, high), (first, last)) = (weighting.range_nm(), grid.range_nm());
+        let (from, to) = contract.range_nm.unwrap_or((first, last));
+        let covered = (low.max(first).max(from), high.min(last).min(to));
+        // Of a line spectrum nothing lies beyond its lines.
+        let whole = sampling == Sampling::Lines || (first <= low && last >= high);
+        let complete = whole && contract.range_nm.is_none_or(|(from, to)| from <= low && to >= high);
+        let covered_nm = (covered.0 <= covered.1).then_some(covered);
+        Ok(Self { key, weights, range_nm: (low, high), covered_nm, complete })
+    }
+
+    /// The weighted integral of values on the grid.
+    pub(super) fn evaluate(&self, values: &[f64]) -> Hazard {
+        Hazard {
+            key: self.key,
+            weighted: dot(&self.weights, values),
+            covered_nm: self.covered_nm,
+            complete: self.complete,
+        }
+    }
+}
+
 impl Plan {
-    /// Compiles those weightings whose tables are embedded.
+    /// Compiles the weightings.
     ///
     /// # Errors
     /// [`RuleError`] where the contract's rule does not fit the grid.
     pub fn new(grid: &Grid, sampling: Sampling, contract: &Contract) -> Result<Self, RuleError> {
-        let mut hazards = Vec::with_capacity(WEIGHTINGS.len());
-        for (key, table) in WEIGHTINGS {
-            if tables::get(table).is_err() {
-                continue;
-            }
-            let weighting: Weighting = single(table);
-            let weights = integrate::weights(grid, sampling, &weighting, contract)?;
-            let ((low, high), (first, last)) = (weighting.range_nm(), grid.range_nm());
-            let covered = (low.max(first), high.min(last));
-            // Of a line spectrum nothing lies beyond its lines.
-            let complete = sampling == Sampling::Lines || (first <= low && last >= high);
-            let covered_nm = (covered.0 <= covered.1).then_some(covered);
-            hazards.push(Weighted { key, weights, covered_nm, complete });
-        }
-        Ok(Self { hazards })
+        let compile = |(key, table)| Weighted::new(key, &single(table), grid, sampling, contract);
+        Ok(Self { hazards: WEIGHTINGS.into_iter().map(compile).collect::<Result<_, _>>()? })
     }
 
     /// The weighted integrals of a spectrum's values on the plan's grid.
     pub fn evaluate<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = Hazard> + 'a {
-        self.hazards.iter().map(|h| Hazard {
-            key: h.key,
-            weighted: dot(&h.weights, values),
-            covered_nm: h.covered_nm,
-            complete: h.complete,
-        })
+        self.hazards.iter().map(|h| h.evaluate(values))
     }
 }

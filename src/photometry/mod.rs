@@ -4,7 +4,8 @@
 //! - [`mesopic`]: the MES2 system of CIE 191.
 //! - [`alpha_opic`]: CIE S 026.
 //! - [`photon`]: photon numbers, PAR and PPFD.
-//! - [`hazard`]: blue-light and actinic-UV weighting.
+//! - [`hazard`]: weighting with the hazards of blue light, heat and ultraviolet.
+//! - [`risk`]: risk groups of lamps.
 //! - [`detector`]: f₁′ and spectral mismatch factors of photometers.
 //! - [`flicker`]: light over time.
 //! - [`transfer`]: geometry that turns one quantity into another.
@@ -16,4 +17,5 @@ pub mod hazard;
 pub mod luminous;
 pub mod mesopic;
 pub mod photon;
+pub mod risk;
 pub mod transfer;

@@ -5,12 +5,13 @@ use crate::colorimetry::observer::Observer;
 use crate::colorimetry::{cct, dominant, rgb, tolerance};
 use crate::constants::SecondRadiation;
 use crate::conversion::{Conversion, Settings};
+use crate::photometry::alpha_opic::RECOMMENDATIONS;
 use crate::spectrum::{Quantity, Sampling, Spectrum};
 use crate::units::significant;
 
 use super::{
-    ChromaticityPanel, ColourVectorPanel, Curve, Diagram, LocusPoint, MarkedPoint, PlanckPoint, SpectrumPanel,
-    Weighting,
+    ChromaticityPanel, ColourVectorPanel, Curve, Diagram, LevelFigure, LevelPanel, LocusPoint, MarkedPoint,
+    PlanckPoint, SpectrumPanel, Weighting,
 };
 
 /// A converted spectrum to draw.
@@ -37,6 +38,30 @@ fn value_label(quantity: Quantity, sampling: Sampling) -> String {
         (Quantity::Exposure, _) => "J/(m²·nm)".to_owned(),
     };
     format!("spectral {} [{unit}]", quantity.word())
+}
+
+/// Melanopic equivalent daylight illuminances beside what is recommended for the eye; the intervals, where known, are in the order
+/// of the spectra. `None` where none has an illuminance above zero.
+#[must_use]
+pub fn melanopic_panel(drawn: &[Drawn<'_>], intervals: &[Option<[f64; 2]>]) -> Option<LevelPanel> {
+    let edi_lx = |c: &Conversion| {
+        let factor = c.absolute.iter().find(|f| f.quantity == Quantity::Irradiance)?.factor;
+        let melanopic = c.alpha_opic.iter().find(|a| a.receptor == "melanopic")?;
+        Some(factor * melanopic.equivalent_daylight).filter(|v| *v > 0.0 && v.is_finite())
+    };
+    let figure = |(i, d): (usize, &Drawn<'_>)| {
+        let value = edi_lx(d.conversion)?;
+        let name = if drawn.len() > 1 { format!("{}: ", d.name) } else { String::new() };
+        let text = format!("{name}{} lx", significant(value, 4));
+        Some(LevelFigure { value, interval: intervals.get(i).copied().flatten(), text })
+    };
+    let figures: Vec<LevelFigure> = drawn.iter().enumerate().filter_map(figure).collect();
+    (!figures.is_empty()).then(|| LevelPanel {
+        title: if let [one] = drawn { one.name.to_owned() } else { String::new() },
+        axis: "melanopic equivalent daylight illuminance [lx]; at the eye recommended (Brown et al. 2022)".to_owned(),
+        figures,
+        references: RECOMMENDATIONS.map(|r| (r.bound_lx, r.word.to_owned())).to_vec(),
+    })
 }
 
 /// sRGB colours standing for wavelengths, every 5 nm: the spectral colour with some white added and cut to the gamut, as

@@ -23,6 +23,7 @@ fn natural(panels: &[Panel]) -> (f64, f64) {
     match panels {
         [Panel::ColourAngle(_)] => (1000.0, 720.0),
         [Panel::Spectrum(_) | Panel::Cartesian(_) | Panel::Budget(_)] => (1000.0, 600.0),
+        [Panel::Level(p)] => (1000.0, p.height()),
         [Panel::Figures(f)] => (1000.0, f.height(1000.0)),
         [Panel::Isolux(p)] => p.natural(),
         [Panel::FalseColour(p)] => p.natural(),
@@ -106,6 +107,7 @@ impl Panel {
             Self::Surface(p) => &p.title,
             Self::FalseColour(p) => &p.title,
             Self::Budget(p) => &p.title,
+            Self::Level(p) => &p.title,
         }
     }
 
@@ -130,6 +132,7 @@ impl Panel {
             Self::Surface(p) => p.draw(sheet, area),
             Self::FalseColour(p) => p.draw(sheet, area),
             Self::Budget(p) => p.draw(sheet, area),
+            Self::Level(p) => p.draw(sheet, area),
         }
     }
 }

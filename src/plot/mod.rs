@@ -54,6 +54,7 @@ mod isocandela;
 mod isolux;
 mod labels;
 mod layout;
+mod level;
 mod lobe;
 pub mod luminaire;
 pub mod luminance;
@@ -84,6 +85,7 @@ pub use falsecolour::{ColourRange, FalseColourPanel, Kind, Level};
 pub use figures::FiguresPanel;
 pub use isocandela::{IsocandelaPanel, Isoline, Web};
 pub use isolux::{IsoluxLine, IsoluxPanel, LuminaireMark};
+pub use level::{LevelFigure, LevelPanel};
 pub use lobe::{Lobe, LobePanel};
 pub use polar::PolarPanel;
 pub use raster::RasterPanel;
@@ -144,6 +146,8 @@ pub enum Panel {
     FalseColour(FalseColourPanel),
     /// What makes the uncertainty of figures.
     Budget(BudgetPanel),
+    /// A figure among reference values.
+    Level(LevelPanel),
 }
 
 macro_rules! panels {
@@ -173,7 +177,8 @@ panels! {
     Raster: RasterPanel,
     Surface: SurfacePanel,
     FalseColour: FalseColourPanel,
-    Budget: BudgetPanel
+    Budget: BudgetPanel,
+    Level: LevelPanel
 }
 
 impl From<ColourVectorPanel> for Panel {

@@ -7,6 +7,7 @@
 //! Reference: A. B. Owen, *Monte Carlo Theory, Methods and Examples*, 2013, ch. 17.
 
 use crate::math::random::philox;
+use crate::uncertainty::Stated;
 
 /// Independent streams of every estimate.
 pub const REPLICATES: usize = 32;
@@ -80,6 +81,15 @@ pub struct Figure {
     pub value: f64,
     /// Its standard error (one standard deviation of the mean).
     pub standard_error: f64,
+}
+
+impl Figure {
+    /// The standard error and the interval of 95 %, with Student's t of 31 degrees of freedom: [`REPLICATES`] less one.
+    #[must_use]
+    pub fn stated(&self) -> Stated {
+        const T_975: f64 = 2.039_513_446_396_409;
+        Stated::of_mean(self.value, self.standard_error, T_975)
+    }
 }
 
 impl Replicate {

@@ -107,6 +107,10 @@ pub fn calibration(views: &[View], found: &Calibration) -> Value {
         range.map(|i| (PARAMETERS[i].to_owned(), values[i].into())).collect()
     };
     let (values, errors) = (found.parameters(), found.standard_errors);
+    let stated = found.stated();
+    let ends = |range: std::ops::Range<usize>| -> Map<String, Value> {
+        range.map(|i| (PARAMETERS[i].to_owned(), json!(stated[i].expanded_95))).collect()
+    };
     let outliers = found.outliers();
     let each = views.iter().zip(&found.views).enumerate().map(|(n, (view, (pose, rms)))| {
         json!({
@@ -122,6 +126,7 @@ pub fn calibration(views: &[View], found: &Calibration) -> Value {
         "intrinsics": part(0..4, &values),
         "distortion": part(4..9, &values),
         "standard_errors": {"intrinsics": part(0..4, &errors), "distortion": part(4..9, &errors)},
+        "expanded_95": {"intrinsics": ends(0..4), "distortion": ends(4..9)},
         "rms_px": found.rms_px,
         "views": each.collect::<Vec<_>>(),
     })

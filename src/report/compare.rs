@@ -31,6 +31,10 @@ pub fn json(paths: [&str; 2], all: &[(String, Difference)]) -> Value {
             "difference": d.a.0 - d.b.0,
             "expanded_a": d.a.1,
             "expanded_b": d.b.1,
+            "correlation": d.correlation,
+            "expanded_difference": d.expanded,
+            "ratio": d.ratio().map(|r| r.0),
+            "expanded_ratio": d.ratio().map(|r| r.1),
             "e_n": Some(d.e_n).filter(|e| e.is_finite()),
             "significant": d.is_significant(),
         })
@@ -48,18 +52,23 @@ pub fn json(paths: [&str; 2], all: &[(String, Difference)]) -> Value {
 /// One row per figure.
 #[must_use]
 pub fn csv(all: &[(String, Difference)]) -> String {
-    let mut out = String::from("key,a,b,difference,expanded_a,expanded_b,e_n,significant\n");
+    let mut out = String::from(
+        "key,a,b,difference,expanded_a,expanded_b,correlation,expanded_difference,ratio,expanded_ratio,e_n,significant\n",
+    );
     for (key, d) in all {
         let e_n = if d.e_n.is_finite() { d.e_n.to_string() } else { String::new() };
+        let ratio = d.ratio().map_or_else(|| ",".to_owned(), |(ratio, expanded)| format!("{ratio},{expanded}"));
         // Writing to a string cannot fail.
         let _ = writeln!(
             out,
-            "{key},{},{},{},{},{},{e_n},{}",
+            "{key},{},{},{},{},{},{},{},{ratio},{e_n},{}",
             d.a.0,
             d.b.0,
             d.a.0 - d.b.0,
             d.a.1,
             d.b.1,
+            d.correlation,
+            d.expanded,
             d.is_significant()
         );
     }
@@ -75,20 +84,21 @@ pub fn text(paths: [&str; 2], all: &[(String, Difference)]) -> String {
     let wide = all.iter().map(|(k, _)| k.len()).fold(6, usize::max);
     let _ = writeln!(
         out,
-        "  {:<wide$} {:>12} {:>12} {:>12} {:>10} {:>10} {:>7}",
-        "figure", "A", "B", "A − B", "U95 of A", "U95 of B", "E_n"
+        "  {:<wide$} {:>12} {:>12} {:>12} {:>10} {:>10} {:>10} {:>7}",
+        "figure", "A", "B", "A − B", "U95 of A", "U95 of B", "of A − B", "E_n"
     );
     for (key, d) in sorted {
         let mark = if d.is_significant() { "  significant" } else { "" };
         let show = |v: f64, digits| significant(v, digits);
         let _ = writeln!(
             out,
-            "  {key:<wide$} {:>12} {:>12} {:>12} {:>10} {:>10} {:>7.2}{mark}",
+            "  {key:<wide$} {:>12} {:>12} {:>12} {:>10} {:>10} {:>10} {:>7.2}{mark}",
             show(d.a.0, 6),
             show(d.b.0, 6),
             show(d.a.0 - d.b.0, 3),
             show(d.a.1, 2),
             show(d.b.1, 2),
+            show(d.expanded, 2),
             d.e_n
         );
     }

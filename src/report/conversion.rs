@@ -2,11 +2,14 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::colorimetry::iec_60081::Steps;
 use crate::colorimetry::rgb::SPACES;
 use crate::colorimetry::tm30::Bin;
 use crate::colorimetry::tolerance::{Tolerance, UV_PRIME_STEP};
 use crate::conversion::{AbsoluteFigures, Conversion, Settings, XyzScale};
+use crate::photometry::alpha_opic::{RECOMMENDATIONS, Recommendation};
 use crate::photometry::photon::Photons;
+use crate::photometry::risk::{Assessment, Risk};
 use crate::spectrum::Quantity;
 use crate::spectrum::format::Printed;
 use crate::spectrum::integrate::ErrorBound;
@@ -108,6 +111,9 @@ pub fn settings(settings: &Settings) -> Value {
     if let Some(luminance) = settings.mesopic_adaptation {
         out.insert("mesopic_adaptation_cd_per_m2".into(), luminance.into());
     }
+    if settings.risk_group {
+        out.insert("risk_group".into(), true.into());
+    }
     if let Some((name, _)) = &settings.illuminant {
         out.insert("illuminant".into(), json!(name));
     }
@@ -178,6 +184,9 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
         if let Some(t) = &c.tolerance {
             set("nominal_white", nominal_white(t));
         }
+        if let Some(s) = &c.standard_colour {
+            set("standard_colour", json!({"name": standard_colour(s), "sdcm": s.sdcm}));
+        }
         set("dominant_wavelength_nm", number(c.dominant.map(|v| v.wavelength_nm)));
         set("excitation_purity", number(c.dominant.map(|v| v.excitation_purity)));
     }
@@ -205,7 +214,7 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
     if groups.alpha_opic {
         set("alpha_opic", alpha_opic(c));
     }
-    if !c.hazard.is_empty() {
+    if !c.hazard.is_empty() || c.risk.is_some() {
         set("hazard", hazard(c));
     }
     if let Some(photons) = &c.photons {
@@ -216,6 +225,11 @@ pub fn json(c: &Conversion, settings: &Settings) -> Map<String, Value> {
     }
     set("integration", integration(c, settings));
     out
+}
+
+/// The name of a standard colour of IEC 60081.
+pub(super) fn standard_colour(s: &Steps) -> String {
+    format!("F {:.0}", s.colour.nominal_k)
 }
 
 fn nominal_white(t: &Tolerance) -> Value {
@@ -283,10 +297,22 @@ fn alpha_opic(c: &Conversion) -> Value {
             let Some((radiometric, equivalent)) = alpha_opic_keys(f.quantity) else { continue };
             one.insert(equivalent.into(), (f.factor * a.equivalent_daylight).into());
             one.insert(radiometric.into(), (f.factor * a.radiometric).into());
+            if a.receptor == "melanopic" && f.quantity == Quantity::Irradiance {
+                one.insert("recommended".into(), recommended(f.factor * a.equivalent_daylight));
+            }
         }
         out.insert(a.receptor.into(), one.into());
     }
     out.into()
+}
+
+/// The recommendations for the eye, and whether an illuminance keeps them.
+fn recommended(edi_lx: f64) -> Value {
+    let one = |r: &Recommendation| {
+        let bound = if r.at_least { "at_least_lx" } else { "at_most_lx" };
+        (r.when.to_owned(), json!({bound: r.bound_lx, "met": r.is_met(edi_lx)}))
+    };
+    Value::Object(RECOMMENDATIONS.iter().map(one).collect())
 }
 
 fn hazard(c: &Conversion) -> Value {
@@ -307,6 +333,32 @@ fn hazard(c: &Conversion) -> Value {
         }
         out.insert(h.key.into(), one.into());
     }
+    if let Some(risk) = &c.risk {
+        out.insert("risk_group".into(), risk_group(risk));
+    }
+    out.into()
+}
+
+fn risk_group(risk: &Risk) -> Value {
+    let mut out = Map::new();
+    out.insert("standard".into(), "IEC 62471:2006".into());
+    out.insert("group".into(), risk.group().map_or(Value::Null, |g| g.key().into()));
+    out.insert("complete".into(), risk.complete().into());
+    out.extend(risk.subtense_rad.map(|a| ("subtense_rad".into(), a.into())));
+    let one = |a: &Assessment| {
+        let unit = if a.hazard.quantity() == Quantity::Radiance { "w_per_m2_sr" } else { "w_per_m2" };
+        let mut one = Map::new();
+        one.insert("symbol".into(), a.hazard.symbol().into());
+        one.insert(format!("value_{unit}"), a.value.into());
+        one.insert(format!("limits_{unit}"), json!(a.limits));
+        one.insert("group".into(), a.group.key().into());
+        one.extend(a.longest_s.map(|t| ("longest_exposure_s".into(), t.into())));
+        one.insert("covered_nm".into(), json!([a.covered_nm.0, a.covered_nm.1]));
+        (a.hazard.key().to_owned(), Value::from(one))
+    };
+    out.insert("hazards".into(), Value::Object(risk.assessments.iter().map(one).collect()));
+    let missing = risk.missing.iter().map(|(hazard, why)| (hazard.key().to_owned(), Value::from(why.word())));
+    out.insert("not_assessed".into(), Value::Object(missing.collect()));
     out.into()
 }
 

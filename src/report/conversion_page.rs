@@ -10,6 +10,7 @@ use crate::conversion::{Conversion, XyzScale};
 use crate::finding::Finding;
 use crate::photometry::alpha_opic::RECEPTORS;
 use crate::photometry::hazard::WEIGHTINGS;
+use crate::photometry::risk::{Assessment, Hazard, Risk};
 use crate::uncertainty::{Measurand, Uncertainty};
 use crate::units::{significant, to_uncertainty};
 
@@ -48,6 +49,7 @@ pub fn page(p: &Parts<'_>) -> Page {
     if !p.figures.is_empty() {
         sections.push(Section::new("Pictures").figures(p.figures.to_vec()));
     }
+    sections.extend(p.conversion.risk.as_ref().and_then(risk));
     sections.extend(p.uncertainty.map(|u| budget(u, p)));
     sections.extend(instrument(p.result));
     sections.push(method(p));
@@ -119,7 +121,47 @@ fn figures(p: &Parts<'_>) -> Section {
     if let Some(t) = &p.conversion.tolerance {
         section = section.text(format!("Nearest nominal white (ANSI C78.377): {}.", super::text::nominal_white(t)));
     }
+    if let Some(s) = &p.conversion.standard_colour {
+        let name = super::conversion::standard_colour(s);
+        section = section.text(format!("Nearest standard colour (IEC 60081): {name}, {:.1} SDCM.", s.sdcm));
+    }
     section
+}
+
+/// The risk group, hazard by hazard.
+fn risk(risk: &Risk) -> Option<Section> {
+    let group = risk.group()?;
+    // What is read as one is not broken.
+    let whole = |text: &str| text.replace(' ', "\u{a0}").replace('/', "/\u{2060}").replace('–', "–\u{2060}");
+    let name = |hazard: Hazard| whole(&format!("{}, {}", hazard.symbol(), hazard.word()));
+    let row = |a: &Assessment| {
+        let [exempt, one, two] = a.limits.map(super::text::limit);
+        [
+            name(a.hazard),
+            whole(&format!("{} {}", significant(a.value, 4), a.hazard.quantity().unit())),
+            a.group.word().to_owned(),
+            format!("{exempt} / {one} / {two}"),
+            a.longest_s.map_or_else(|| "no limit".to_owned(), |t| whole(&format!("{} s", significant(t, 3)))),
+            whole(&format!("{}–{} nm{}", a.covered_nm.0, a.covered_nm.1, if a.complete { "" } else { " in part" })),
+        ]
+    };
+    let missing = risk.missing.iter().map(|(hazard, why)| {
+        let mut row = [const { String::new() }; 6];
+        row[0] = name(*hazard);
+        row[1] = format!("not assessed: {}", why.word());
+        row
+    });
+    let rows = risk.assessments.iter().map(row).chain(missing).collect();
+    let head = ["hazard", "value", "group", "exempt / 1 / 2 up to", "longest exposure", "from"];
+    let bound =
+        if risk.complete() { "" } else { ", a lower bound: not every hazard was assessed over its whole range" };
+    let angle = risk.subtense_rad.map_or_else(
+        || "An unknown angle of the source; the limits are those of 0.1 rad, the strictest.".to_owned(),
+        |a| format!("The source subtends {} mrad.", significant(1e3 * a, 4)),
+    );
+    let section =
+        Section::new("Photobiological safety").text(format!("By IEC 62471:2006 {}{bound}. {angle}", group.word()));
+    Some(section.table("Hazards and their limits, in the unit of the value", head, rows))
 }
 
 fn budget(u: &Uncertainty, p: &Parts<'_>) -> Section {

@@ -124,6 +124,8 @@ li.error{border-color:#b3261e}
 li.warning{border-color:#b26a00}
 li small{color:#4b4b4b}
 @media(min-width:48rem){.figures{grid-template-columns:repeat(3,minmax(0,1fr))}.drawings{grid-template-columns:repeat(2,minmax(0,1fr))}.drawing img{min-width:0}}
+@page{size:A4;margin:15mm}
+@media(max-width:30rem){td:first-child{white-space:normal;min-width:6rem}}
 @media print{body{max-width:none;padding:0;font-size:10pt}nav{display:none}figure,tr,li{break-inside:avoid}\
 h2{break-after:avoid}.scroll{overflow:visible}td{white-space:normal}\
 .figures{grid-template-columns:repeat(3,minmax(0,1fr))}.drawings{grid-template-columns:repeat(2,minmax(0,1fr))}.drawing img{min-width:0}}

@@ -122,6 +122,10 @@ pub fn sensor(reading: &Reading) -> Value {
     set("unit", reading.unit.into());
     set("value", reading.figure.value.into());
     set("standard_error", reading.figure.standard_error.into());
+    // Radiosity has no scatter, and errs by its patches.
+    if reading.figure.standard_error > 0.0 {
+        set("expanded_95", json!(reading.figure.stated().expanded_95));
+    }
     set("samples", reading.samples.into());
     if let Some(difference) = reading.discretisation {
         set("discretisation", difference.into());

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
+use super::conversion::standard_colour;
 use crate::colorimetry::tolerance::{Tolerance, UV_PRIME_STEP};
 use crate::conversion::{AbsoluteFigures, Conversion, Settings, XyzScale};
+use crate::photometry::alpha_opic::RECOMMENDATIONS;
 use crate::spectrum::Quantity;
 use crate::spectrum::integrate::Rule;
 use crate::units::significant;
@@ -85,6 +87,7 @@ pub fn conversion(heading: &str, c: &Conversion, settings: &Settings) -> String 
     colour(&mut out, c, settings);
     rendition(&mut out, c);
     biology(&mut out, c);
+    risk(&mut out, c);
     shape(&mut out, c);
     basis(&mut out, c, settings);
     out.0
@@ -139,6 +142,9 @@ fn colour(out: &mut Lines, c: &Conversion, settings: &Settings) {
     if let Some(t) = &c.tolerance {
         out.line("nominal white", nominal_white(t));
     }
+    if let Some(s) = &c.standard_colour {
+        out.line("IEC 60081", format!("{}: {:.1} SDCM", standard_colour(s), s.sdcm));
+    }
     if let Some(d) = c.dominant {
         let (label, wavelength) = if d.wavelength_nm < 0.0 {
             ("complementary wavelength", -d.wavelength_nm)
@@ -187,7 +193,14 @@ fn biology(out: &mut Lines, c: &Conversion) {
     if let Some(a) = melanopic {
         let irradiance = c.absolute.iter().find(|f| f.quantity == Quantity::Irradiance);
         if let Some(f) = irradiance {
-            out.line("melanopic EDI", format!("{} lx", show(f.factor * a.equivalent_daylight)));
+            let edi_lx = f.factor * a.equivalent_daylight;
+            out.line("melanopic EDI", format!("{} lx", show(edi_lx)));
+            // What would be enough by day is too much at night: each bound with its answer.
+            let kept = RECOMMENDATIONS.map(|r| {
+                let sign = if r.at_least { '≥' } else { '≤' };
+                format!("{} {sign} {} lx {}", r.when, r.bound_lx, if r.is_met(edi_lx) { "yes" } else { "no" })
+            });
+            out.line("  at the eye recommended", kept.join(", "));
         }
         out.line("melanopic DER", a.der.map_or("–".into(), show));
     }
@@ -205,10 +218,44 @@ fn biology(out: &mut Lines, c: &Conversion) {
         out.line("PAR photons per joule", p.umol_per_j.map_or("–".into(), |v| format!("{} µmol/J", show(v))));
     }
     for h in &c.hazard {
-        let label = if h.key == "blue_light" { "blue-light weighted B(λ)" } else { "UV-hazard weighted S(λ)" };
+        let label = match h.key {
+            "blue_light" => "blue-light weighted B(λ)",
+            "retinal_thermal" => "retinal thermal R(λ)",
+            _ => "UV-hazard weighted S(λ)",
+        };
         if let Some(f) = c.absolute.first() {
             out.line(label, format!("{} {}", show(h.weighted), f.quantity.unit()));
         }
+    }
+}
+
+/// A limit of a risk group, without zeros at its end.
+pub(super) fn limit(value: f64) -> String {
+    if value.fract() == 0.0 || value < 1.0 { value.to_string() } else { significant(value, 3) }
+}
+
+fn risk(out: &mut Lines, c: &Conversion) {
+    let Some(risk) = &c.risk else { return };
+    let Some(group) = risk.group() else { return };
+    out.gap();
+    let bound = if risk.complete() { "" } else { ", a lower bound" };
+    out.line("risk group (IEC 62471)", format!("{}{bound}", group.word()));
+    for a in &risk.assessments {
+        let [exempt, one, two] = a.limits.map(limit);
+        let time =
+            a.longest_s.map_or_else(|| "no limit of time".to_owned(), |t| format!("at most {} s", significant(t, 3)));
+        out.line(
+            &format!("  {} {}", a.hazard.symbol(), a.hazard.word()),
+            format!(
+                "{} {}: {}, {time} (exempt to {exempt}, group 1 to {one}, group 2 to {two})",
+                significant(a.value, 4),
+                a.hazard.quantity().unit(),
+                a.group.word()
+            ),
+        );
+    }
+    for (hazard, why) in &risk.missing {
+        out.line(&format!("  {} {}", hazard.symbol(), hazard.word()), format!("not assessed: {}", why.word()));
     }
 }
 

@@ -67,6 +67,17 @@ impl Weighting {
         Self { sharp: true, ..Self::table(vec![low_nm, high_nm], vec![1.0, 1.0]) }
     }
 
+    /// The part of a table at and above one of its wavelengths, which ends there in a step.
+    ///
+    /// # Panics
+    /// Where fewer than two entries are left.
+    #[must_use]
+    pub fn from(&self, low_nm: f64) -> Self {
+        let first = self.wavelengths_nm.partition_point(|w| *w < low_nm);
+        let part = Self::table(self.wavelengths_nm[first..].to_vec(), self.values[first..].to_vec());
+        Self { sharp: true, ..part }
+    }
+
     /// The value at a wavelength.
     #[must_use]
     pub fn at(&self, wavelength_nm: f64) -> f64 {

@@ -42,6 +42,8 @@ const FILES: &[(&str, &str)] = files![
     "cvrl/v_judd_vos_1978.csv",
     "icnirp/actinic_uv_hazard.csv",
     "icnirp/blue_light_hazard.csv",
+    "icnirp/retinal_thermal_hazard.csv",
+    "iec/60081.csv",
     "ies/ces99_1nm.csv",
     "mccree/rqe_1972.csv",
     "nist/lines.csv",

@@ -51,6 +51,33 @@ pub(super) fn propagate(model: &Model, figures: &impl Outputs) -> Propagated {
     Propagated { standard, covariance }
 }
 
+/// Change of every figure (column) per unit of each independent mode (row) of the contributions `chosen`, with its sign.
+pub(super) fn effects(model: &Model, figures: &impl Outputs, chosen: &[usize]) -> Vec<DMatrix<f64>> {
+    let count = figures.count();
+    let directions: Vec<Direction> = chosen.iter().map(|i| model.direction(*i)).collect();
+    let gradient = directions.iter().any(|d| !matches!(d, Direction::One(_))).then(|| gradient(model, figures));
+    let of = |direction: &Direction| match (direction, &gradient) {
+        (Direction::One(d), _) => DMatrix::from_row_slice(1, count, &along(model, figures, d)),
+        (Direction::Independent(u), Some(g)) => DMatrix::from_fn(g.nrows(), count, |r, c| g[(r, c)] * u[r]),
+        (Direction::Many(modes), Some(g)) => modes.tr_mul(g),
+        (Direction::Chain { standard, correlation }, Some(g)) => {
+            // eᵢ = rᵢ eᵢ₋₁ + √(1 − rᵢ²) zᵢ: a mode acts on its own sample and, ever less, on those after it.
+            let mut out = DMatrix::zeros(g.nrows(), count);
+            for k in 0..count {
+                let mut after = 0.0;
+                for i in (0..g.nrows()).rev() {
+                    after = g[(i, k)] * standard[i] + correlation.get(i + 1).map_or(0.0, |r| r * after);
+                    out[(i, k)] = (1.0 - correlation[i].powi(2)).sqrt() * after;
+                }
+            }
+            out
+        }
+        // A gradient was made for whatever needs one.
+        (_, None) => DMatrix::zeros(0, count),
+    };
+    directions.iter().map(of).collect()
+}
+
 /// Gᵀ C G for samples of which each is correlated with the one before it: C_ij = uᵢ uⱼ Π r. With t_i = a_i + r_i t_{i−1} the
 /// sum over all j < i is r_i t_{i−1}, so that one pass over the samples is enough.
 fn chain(g: &DMatrix<f64>, standard: &[f64], correlation: &[f64]) -> DMatrix<f64> {

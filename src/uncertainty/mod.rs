@@ -4,6 +4,7 @@
 //! - [`budget`]: what is known of the errors, read from TOML; [`table`]: the tables that it names.
 //! - [`evaluate`]: the uncertainty of every figure of a conversion, the share of each contribution, and what both ways of
 //!   propagation disagree in.
+//! - [`compare`]: differences of two measurements; [`shared`]: what of them errs together.
 //! - [`Stated`]: a standard uncertainty and an interval of 95 %, which need not lie evenly about the figure.
 //!
 //! ```
@@ -35,6 +36,7 @@ pub mod detector;
 mod measurand;
 mod model;
 mod monte_carlo;
+pub mod shared;
 pub mod table;
 
 pub use measurand::Measurand;
@@ -100,6 +102,15 @@ pub struct Stated {
     pub standard: f64,
     /// Ends of the interval that holds 95 %, 2.5 % being outside on either side.
     pub expanded_95: [f64; 2],
+}
+
+impl Stated {
+    /// Of a mean with its standard error: the interval reaches `t` standard errors to either side, Student's t of 0.975 for the
+    /// degrees of freedom of the error (JCGM 100, G.3).
+    #[must_use]
+    pub fn of_mean(value: f64, standard_error: f64, t: f64) -> Self {
+        Self { standard: standard_error, expanded_95: [value - t * standard_error, value + t * standard_error] }
+    }
 }
 
 /// How a figure's stated uncertainty was found.

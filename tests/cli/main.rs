@@ -11,6 +11,7 @@ mod outputs;
 mod quantities;
 mod reflectance;
 mod report;
+mod safety;
 mod trade;
 mod uncertainty;
 

@@ -41,6 +41,28 @@ fn a_sloping_white_is_as_white_as_elsewhere() {
     }
 }
 
+/// The light may be a spectrum of the user's own: D65 from its table, in any unit, is D65, but for the figures that are defined for it.
+#[test]
+fn an_illuminant_may_come_from_a_file() {
+    let table = crate::photopic()
+        .args(["tables", "cie-illuminant-d65", "--csv"])
+        .assert()
+        .success()
+        .get_output()
+        .stdout
+        .clone();
+    let folder =
+        Folder::new().with("paper.csv", sample(sloping)).with("light.csv", String::from_utf8(table).expect("text"));
+    let run =
+        |light: &str| json(folder.run().args(["convert", "paper.csv", "--illuminant", light, "--figures", "luminous"]));
+    let (file, name) = (run("light.csv"), run("D65"));
+    for key in ["xyz.0", "xyz.1", "xyz.2"] {
+        close(number(&file, key), number(&name, key), 1e-9);
+    }
+    assert_eq!(file["settings"]["illuminant"], "light.csv");
+    assert!(file["results"][0].get("whiteness").is_none());
+}
+
 #[test]
 fn the_perfect_diffuser_is_the_white_itself() {
     // On any grid: by 7 nm, not to the ends of the observer.

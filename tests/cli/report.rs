@@ -20,8 +20,8 @@ fn a_report_holds_inputs_method_figures_pictures_and_budget() {
     }
     assert!(page.contains("<td>illuminance</td>") && page.contains("95 % interval"));
     assert!(page.contains("lamp &amp; &lt;mirror&gt;"), "names are text");
-    // Spectrum, chromaticity, colour vectors, budget; nothing is fetched from elsewhere.
-    assert_eq!(page.matches("data:image/svg+xml;base64,").count(), 4);
+    // Spectrum, chromaticity, colour vectors, melanopic illuminance, budget; nothing is fetched from elsewhere.
+    assert_eq!(page.matches("data:image/svg+xml;base64,").count(), 5);
     assert!(!page.contains("src=\"http") && !page.contains("<script"));
 }
 
@@ -46,6 +46,12 @@ fn a_white_light_is_held_against_the_nearest_nominal_white() {
     assert_eq!(number(&document, "nominal_white.nominal_cct_k"), 2700.0);
     assert_eq!(at(&document["results"][0], "nominal_white.inside_quadrangle"), &serde_json::json!(true));
     assert!(number(&document, "nominal_white.delta_uv_prime") < 1e-4 && number(&document, "nominal_white.sdcm") < 0.1);
+    // The centre of F 4000 (IEC 60081) is x = y = 0.380; a blackbody of 4000 K has 0.3805, 0.3768.
+    let document = json(folder.run().args(["convert", "blackbody:4000K"]));
+    assert_eq!(at(&document["results"][0], "standard_colour.name"), &serde_json::json!("F 4000"));
+    let (dx, dy) = (0.3805 - 0.380, 0.3768 - 0.380);
+    let steps = (39.5e4f64 * dx * dx - 2.0 * 21.5e4 * dx * dy + 26e4 * dy * dy).sqrt();
+    assert!((number(&document, "standard_colour.sdcm") - steps).abs() < 0.05, "{document}");
     // Illuminant A, 2856 K, is 131 K away: inside of 2580 K to 2870 K. A candle is no such light.
     let document = json(folder.run().args(["convert", "A"]));
     assert_eq!(at(&document["results"][0], "nominal_white.inside_quadrangle"), &serde_json::json!(true));

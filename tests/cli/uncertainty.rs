@@ -75,6 +75,31 @@ fn two_measurements_differ_or_not_and_the_exit_code_says_so() {
     }
 }
 
+/// One lamp calibrated both: 2 % of either cancel in the ratio, and 2 % of the difference are left: E_n = 1/(1.959964 · 0.02).
+#[test]
+fn a_shared_scale_is_named_and_cancels() {
+    let level = |v: f64| {
+        let rows: String = (380..=780).step_by(5).map(|w| format!("{w},{v}\n")).collect();
+        format!("wavelength_nm,irradiance_w_per_m2_nm\n{rows}")
+    };
+    let folder = Folder::new().with("a.csv", level(1.05)).with("b.csv", level(1.0)).with("u.toml", SCALE);
+    let run = |shared: &str| {
+        let mut command = folder.run();
+        command.args(["compare", "a.csv", "b.csv", "--uncertainty", "u.toml", "--quantity", "irradiance", "--json"]);
+        command.args(["--figure", "photopic.illuminance_lx", "--shared", shared]);
+        command.assert()
+    };
+    let out = run("lamp").code(1).get_output().stdout.clone();
+    let document: serde_json::Value = serde_json::from_slice(&out).expect("one JSON document");
+    let e_n = number(&document, "figures.0.e_n");
+    assert!((e_n - 25.510_674).abs() < 1e-4, "{e_n}");
+    assert!((number(&document, "figures.0.ratio") - 1.05).abs() < 1e-12);
+    assert!(number(&document, "figures.0.expanded_ratio") < 1e-6);
+    let out = run("slit").code(2).get_output().stderr.clone();
+    let said = String::from_utf8(out).expect("text");
+    assert!(said.contains("no contribution named `slit` in the budget of A; expected one of lamp"), "{said}");
+}
+
 #[test]
 fn a_shifted_photometer_has_its_known_figures_and_they_are_ranked() {
     // V(λ) as CIE prints it, from the tool's own table; shifted by 1 and 5 nm.

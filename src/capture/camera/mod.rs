@@ -17,6 +17,7 @@ mod start;
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::geometry::lens::Distortion;
+use crate::uncertainty::{COVERAGE_FACTOR_95, Stated};
 
 pub use adjust::{calibrate, calibrate_lean};
 pub use board::find_corners;
@@ -110,6 +111,15 @@ pub struct Calibration {
     pub views: Vec<(Pose, f64)>,
     /// Whether the adjustment came to rest.
     pub converged: bool,
+}
+
+impl Calibration {
+    /// Standard errors and intervals of 95 % of the nine numbers; the corners are so many that they are normally distributed.
+    #[must_use]
+    pub fn stated(&self) -> [Stated; 9] {
+        let (values, errors) = (self.parameters(), self.standard_errors);
+        std::array::from_fn(|i| Stated::of_mean(values[i], errors[i], COVERAGE_FACTOR_95))
+    }
 }
 
 /// Names of the nine numbers of a camera, in the order of [`Calibration::standard_errors`].

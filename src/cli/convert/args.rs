@@ -1,11 +1,11 @@
 //! Arguments of `convert`, and the settings they mean.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde::Deserialize;
 
-use super::measures;
+use super::{input, measures};
 use crate::cli::Failure;
 use crate::colorimetry::adaptation::Transform;
 use crate::colorimetry::{Observer, cct, chromaticity};
@@ -34,6 +34,7 @@ Examples:
   photopic convert lamp.csv --uncertainty budget.toml         (every figure with its uncertainty)
   photopic convert lamp.csv --uncertainty budget.toml --report lamp.html
   photopic convert paper.csv --illuminant D65                 (a reflectance: whiteness, tint, yellowness)
+  photopic convert lamp.csv --risk-group --cone 40mrad        (IEC 62471, of a source seen within ±40 mrad)
   cat lamp.csv | photopic convert - --csv")]
 pub(in crate::cli) struct ConvertArgs {
     /// Spectrum files, `-` for standard input, or sources by name: A, D65, FL11, LED-B3, blackbody:2856K, daylight:6504K,
@@ -50,9 +51,21 @@ pub(in crate::cli) struct ConvertArgs {
     #[command(flatten)]
     pub(super) geometry: GeometryArgs,
     #[command(flatten)]
+    pub(super) safety: Safety,
+    #[command(flatten)]
     pub(super) uncertainty: UncertaintyArgs,
     #[command(flatten)]
     pub(super) output: Output,
+}
+
+/// Photobiological safety.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Photobiological safety")]
+pub(super) struct Safety {
+    /// Risk group by IEC 62471: of an irradiance at the distance that the standard asks for (500 lx for general lighting, else
+    /// 200 mm), of a radiance, or of both with --cone or --solid-angle of the source as seen, or --source with --distance.
+    #[arg(long)]
+    pub risk_group: bool,
 }
 
 /// Uncertainty.
@@ -152,9 +165,9 @@ pub(super) struct Colour {
     /// How CCT and Duv are found: by minimising the distance to the locus, or by Ohno's table.
     #[arg(long, value_enum, default_value = "exact")]
     pub cct_method: CctArg,
-    /// Take the input as a reflectance (1 is the perfect diffuser) under this light, a source by name (D65, C, A, FL11, blackbody:2856K):
-    /// all figures are of the light reflected; under D65 and C with whiteness, tint and yellowness.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["scale_to", "white"])]
+    /// Take the input as a reflectance (1 is the perfect diffuser) under this light, a source by name (D65, C, A, FL11, blackbody:2856K)
+    /// or a spectrum file: all figures are of the light reflected; under D65 and C with whiteness, tint and yellowness.
+    #[arg(long, value_name = "SOURCE", conflicts_with_all = ["scale_to", "white"])]
     pub illuminant: Option<String>,
     /// White point x,y of dominant wavelength and purity; by default equal energy, of a reflectance its illuminant.
     #[arg(long, value_name = "X,Y", value_parser = measures::xy)]
@@ -240,7 +253,7 @@ pub(super) struct Output {
 /// What `--plot` draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum PlotKind {
-    /// All three on one sheet.
+    /// Spectrum, u′v′ diagram and colour vector graphic on one sheet.
     All,
     /// The spectrum with V(λ).
     Spectrum,
@@ -250,6 +263,8 @@ pub(super) enum PlotKind {
     ChromaticityXy,
     /// The TM-30 colour vector graphic.
     Tm30,
+    /// The melanopic illuminance beside what is recommended for the eye.
+    Melanopic,
 }
 
 /// A group of figures.
@@ -269,7 +284,7 @@ pub(super) enum Group {
     AlphaOpic,
     /// Photon numbers.
     Photon,
-    /// Blue-light and UV hazard weighting.
+    /// Blue-light, retinal thermal and UV hazard weighting.
     Hazard,
     /// RGB spaces.
     Rgb,
@@ -390,11 +405,16 @@ impl ConvertArgs {
             C2Arg::Si => SecondRadiation::Si,
             C2Arg::Nbs1931 => SecondRadiation::Nbs1931,
         };
-        let light = |name: &String| {
-            let source = named::source(name, c2);
-            source
-                .map(|source| (source.name, source.spectrum))
-                .map_err(|e| Failure::Message(format!("--illuminant {name}: {e}")))
+        let light = |name: &String| -> Result<_, Failure> {
+            let refused = |why: &str| Failure::Message(format!("--illuminant {name}: {why}"));
+            if !Path::new(name).exists() {
+                let source = named::source(name, c2).map_err(|e| refused(&e.to_string()))?;
+                return Ok((source.name, source.spectrum));
+            }
+            let light = input::single(name, None, None, c2).map_err(|why| Failure::Message(why.message))?;
+            // A file is not the light that it may be called after.
+            let called = if named::is_name(name) { format!("./{name}") } else { name.clone() };
+            Ok((called, light.measured.spectrum))
         };
         Ok(Settings {
             contract: Contract { rule: i.rule.map(Into::into), range_nm: i.range },
@@ -438,6 +458,7 @@ impl ConvertArgs {
                 shape: g.source,
                 time_s: g.time,
             },
+            risk_group: self.safety.risk_group,
             groups: self.groups(),
             level: g.scale_to.clone(),
         })

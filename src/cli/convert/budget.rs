@@ -22,7 +22,7 @@ pub(in crate::cli) fn read(path: &Path) -> Result<Budget, Failure> {
     })
 }
 
-/// A budget as an input of a report.
+/// A budget or an illuminant as an input of a report.
 pub(super) fn input(path: &Path) -> Result<Input, Failure> {
     let bytes = fs::read(path).map_err(|e| Failure::Message(format!("{}: cannot be read: {e}", path.display())))?;
     let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();

@@ -1,6 +1,7 @@
 //! `convert`: spectra in, figures out; many inputs in parallel, reported in the order given.
 
 use std::io::Write;
+use std::path::Path;
 
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -175,8 +176,9 @@ pub(super) fn run(mut arguments: ConvertArgs, talk: Talk) -> Result<(), Failure>
         output::write_file(path, &picture, &arguments.files)?;
     }
     if let Some(path) = &arguments.output.report {
-        if let Some(budget) = &arguments.uncertainty.budget {
-            read.push(budget::input(budget)?);
+        let light = arguments.colour.illuminant.as_deref().map(Path::new).filter(|path| path.exists());
+        for path in light.into_iter().chain(arguments.uncertainty.budget.as_deref()) {
+            read.push(budget::input(path)?);
         }
         let page = picture::page(&kept, job.converter.settings(), &settings_json, &read, &noticed)?;
         output::write_file(path, page.html().as_bytes(), &arguments.files)?;

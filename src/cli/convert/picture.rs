@@ -8,15 +8,20 @@ use super::args::PlotKind;
 use crate::cli::Failure;
 use crate::conversion::{Conversion, Settings};
 use crate::finding::Finding;
-use crate::plot::conversion::{Drawn, chromaticity_panel, colour_vector_panel, spectrum_panel, tolerance_regions};
+use crate::photometry::alpha_opic::RECEPTORS;
+use crate::plot::conversion::{
+    Drawn, chromaticity_panel, colour_vector_panel, melanopic_panel, spectrum_panel, tolerance_regions,
+};
 use crate::plot::uncertainty::budget_panel;
-use crate::plot::{ChromaticityPanel, Diagram, Format, Panel, SpectrumPanel, data_uri, draw as draw_panels};
+use crate::plot::{
+    ChromaticityPanel, Diagram, Format, LevelPanel, Panel, SpectrumPanel, data_uri, draw as draw_panels,
+};
 use crate::report::conversion_page::{self, Parts};
 use crate::report::envelope::Input;
 use crate::report::html::{Figure, Page};
 use crate::report::uncertainty::budgeted;
-use crate::spectrum::Spectrum;
-use crate::uncertainty::Uncertainty;
+use crate::spectrum::{Quantity, Spectrum};
+use crate::uncertainty::{Measurand, Uncertainty};
 
 /// Curves in one drawing at most: more cannot be told apart.
 const MOST_CURVES: usize = 64;
@@ -74,6 +79,11 @@ pub(super) fn draw(
             };
             vec![vector(one).ok_or_else(|| fail("this spectrum has no TM-30 figures".into()))?]
         }
+        PlotKind::Melanopic => {
+            let none =
+                "no melanopic illuminance above zero; expected an irradiance (--quantity, --unit, or --distance)";
+            vec![melanopic_panel(&drawn, &intervals(kept)).ok_or_else(|| fail(none.into()))?.into()]
+        }
         PlotKind::All => {
             let mut panels: Vec<Panel> = vec![spectrum_panel(&drawn, settings).into(), chromaticity(Diagram::Cie1976)];
             if let [one] = drawn.as_slice() {
@@ -83,6 +93,13 @@ pub(super) fn draw(
         }
     };
     draw_panels(&panels, None, format).map_err(|e| fail(e.to_string()))
+}
+
+/// The intervals of the melanopic illuminances, where a budget was given.
+fn intervals(kept: &[Kept]) -> Vec<Option<[f64; 2]>> {
+    let melanopic = RECEPTORS.iter().position(|r| *r == "melanopic").map(Measurand::EquivalentDaylight);
+    let stated = |k: &Kept| k.uncertainty.as_ref()?.figure(melanopic?)?.stated.map(|s| s.expanded_95);
+    kept.iter().map(stated).collect()
 }
 
 /// The report on the one spectrum kept; `inputs` are what it rests on.
@@ -109,6 +126,10 @@ pub(super) fn page(
         ),
     ];
     panels.extend(colour_vector_panel(&drawn[0]).map(|p| (p.into(), "TM-30: shift of the sixteen hue bins.")));
+    if one.conversion.quantity == Quantity::Irradiance {
+        let panel = melanopic_panel(&drawn, &intervals(kept)).map(|p| LevelPanel { title: String::new(), ..p });
+        panels.extend(panel.map(|p| (p.into(), "Melanopic illuminance and what is recommended for the eye.")));
+    }
     if let Some(u) = &one.uncertainty {
         let panel = budget_panel("", u, &budgeted(one.conversion.quantity));
         panels.push((panel.into(), "The budget: share of each contribution in the variance."));
