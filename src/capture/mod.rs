@@ -1,6 +1,7 @@
 //! From photographs of known geometry to what they measure: the camera, its response, radiance.
 //!
-//! - [`manifest`]: what was photographed, in TOML; [`photo`]: the codes of a photograph and when it says it was exposed.
+//! - [`manifest`]: what was photographed, in TOML; [`photo`]: the codes of a photograph and when it says it was exposed; [`rows`]: the
+//!   same by rows.
 //! - [`response`]: the curve from code to exposure, from stacks of photographs of one scene at several times.
 //! - [`noise`]: the standard error of a code; [`flat`]: vignetting from an evenly lit field.
 //! - [`merge`]: such a stack into linear radiance with its standard error and a mask.
@@ -25,6 +26,7 @@ pub mod noise;
 pub mod photo;
 pub mod radiance;
 pub mod response;
+pub mod rows;
 pub mod setup;
 
 pub use error::Error;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::surface::{Cylinder, Hit, Plane, Sphere, Surface};
 use crate::capture::camera::Camera;
 use crate::capture::merge::State;
-use crate::capture::radiance::Radiance;
+use crate::capture::radiance::{Radiance, Strip};
 use crate::capture::setup::{self, Place};
 use crate::capture::{Error, Manifest};
 use crate::geometry::direction::tangents;
@@ -114,6 +114,19 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Adds those of other rows.
+    pub fn add(&mut self, other: &Self) {
+        self.valid += other.valid;
+        self.outside += other.outside;
+        self.masked += other.masked;
+        self.silhouette += other.silhouette;
+        self.attached_shadow += other.attached_shadow;
+        self.cast_shadow += other.cast_shadow;
+        self.inter_reflection += other.inter_reflection;
+        self.saturated += other.saturated;
+        self.dark += other.dark;
+    }
+
     /// Names and numbers, valid ones first.
     #[must_use]
     pub fn named(&self) -> [(&'static str, usize); 9] {
@@ -324,14 +337,10 @@ impl Scene {
         to_camera * angle_rad.cos() + aside * angle_rad.sin()
     }
 
-    /// Visits the measurements of a picture, `mask` (a value per pixel, where given) being true where the object is.
-    ///
-    /// `strength` is the light's: radiant intensity of a near light, irradiance of a facing surface of a distant one, per band, so that the
-    /// unit of the picture over that of the strength is 1/sr (times m² for a near light).
+    /// Visits the measurements of a picture: [`Scene::observe_rows`] of all of it.
     ///
     /// # Errors
-    /// [`Error::Setup`] for a mask of another size, another number of strengths than bands, a near light inside of the object, or
-    /// pictures of several sizes of an object that is not convex.
+    /// As there.
     pub fn observe(
         &self,
         picture: &Radiance,
@@ -340,6 +349,27 @@ impl Scene {
         mask: Option<&[bool]>,
         visit: &mut dyn FnMut(&Seen<'_>),
     ) -> Result<Counts, Error> {
+        self.observe_rows(&Strip::whole(picture), place, strength, mask, visit)
+    }
+
+    /// Visits the measurements of rows of a picture, `mask` (a value per pixel of the whole picture, where given) being true where the object is.
+    ///
+    /// `strength` is the light's: radiant intensity of a near light, irradiance of a facing surface of a distant one, per band, so that the
+    /// unit of the picture over that of the strength is 1/sr (times m² for a near light).
+    ///
+    /// # Errors
+    /// [`Error::Setup`] for a mask of another size, another number of strengths than bands, a near light inside of the object, or
+    /// pictures of several sizes of an object that is not convex.
+    pub fn observe_rows(
+        &self,
+        strip: &Strip<'_>,
+        place: Place,
+        strength: &[f64],
+        mask: Option<&[bool]>,
+        visit: &mut dyn FnMut(&Seen<'_>),
+    ) -> Result<Counts, Error> {
+        let picture = strip.picture;
+        let (width, height) = (picture.width, strip.height);
         let bands = picture.channels;
         if strength.len() != bands {
             return Err(Error::Setup {
@@ -347,9 +377,9 @@ impl Scene {
                 expected: "one number, or as many as the picture has bands",
             });
         }
-        if mask.is_some_and(|m| m.len() != picture.width * picture.height) {
+        if mask.is_some_and(|m| m.len() != width * height) {
             return Err(Error::Setup {
-                found: format!("a mask of another size than {}", picture.size()),
+                found: format!("a mask of another size than {width} × {height} pixels"),
                 expected: "a mask of the size of the pictures",
             });
         }
@@ -365,21 +395,22 @@ impl Scene {
             (self.limits.max_theta_i_deg.to_radians().cos(), self.limits.max_theta_o_deg.to_radians().cos());
         let [mut values, mut errors, mut corrections] = [(); 3].map(|()| vec![0.0; bands]);
         let mut counts = Counts::default();
-        let mut rows = Rows { scene: self, place, width: picture.width, height: picture.height, kept: Vec::new() };
-        let crowded = self.crowded(picture.width, picture.height);
+        let mut rows = Rows { scene: self, place, width, height, kept: Vec::new() };
+        let crowded = self.crowded(width, height);
         if crowded.is_none() && !self.surface.is_convex() {
             return Err(Error::Setup {
-                found: format!("a picture of another size: {}", picture.size()),
+                found: format!("a picture of another size: {width} × {height} pixels"),
                 expected: "pictures of one size",
             });
         }
-        for y in (0..picture.height).step_by(self.limits.every.max(1)) {
-            for x in (0..picture.width).step_by(self.limits.every.max(1)) {
+        let every = self.limits.every.max(1);
+        for y in strip.rows.clone().filter(|y| y.is_multiple_of(every)) {
+            for x in (0..width).step_by(every) {
                 let Some(spot) = rows.spot(x, y) else {
                     counts.outside += 1;
                     continue;
                 };
-                let at = y * picture.width + x;
+                let at = y * width + x;
                 if mask.is_some_and(|m| !m[at]) {
                     counts.masked += 1;
                     continue;
@@ -401,7 +432,8 @@ impl Scene {
                     counts.inter_reflection += 1;
                     continue;
                 }
-                let samples = at * bands..(at + 1) * bands;
+                let here = strip.at(x, y);
+                let samples = here * bands..(here + 1) * bands;
                 match self.state(picture, samples.clone()) {
                     State::Valid => {}
                     State::Saturated => {
@@ -413,7 +445,7 @@ impl Scene {
                         continue;
                     }
                 }
-                let neighbours = self.neighbours(picture, &mut rows, (x, y));
+                let neighbours = self.neighbours(strip, &mut rows, (x, y));
                 for (band, i) in samples.enumerate() {
                     // Samples are radiance times exposure time.
                     let exposure = strength[band] * view.irradiance * picture.time_s;
@@ -438,19 +470,20 @@ impl Scene {
     }
 
     /// The four pixels beside one, where averages are corrected and all four are of use: lit, on the same part of the object, within the range.
-    fn neighbours(&self, picture: &Radiance, rows: &mut Rows<'_>, (x, y): (usize, usize)) -> Option<[usize; 4]> {
+    fn neighbours(&self, strip: &Strip<'_>, rows: &mut Rows<'_>, (x, y): (usize, usize)) -> Option<[usize; 4]> {
+        let picture = strip.picture;
         if self.pixel_variance.max(self.placement_px) <= 0.0 && self.radiance.relative_error.is_none()
             || x == 0
             || y == 0
             || x + 1 >= picture.width
-            || y + 1 >= picture.height
+            || y + 1 >= strip.height
         {
             return None;
         }
         let bands = picture.channels;
         let mut of_use = |x: usize, y: usize| {
             let spot = rows.spot(x, y)?;
-            let at = y * picture.width + x;
+            let at = strip.at(x, y);
             let lit = !spot.edge && !spot.shadow && light(rows.place, &spot.hit).0.dot(spot.hit.normal) > 0.0;
             (lit && self.state(picture, at * bands..(at + 1) * bands) == State::Valid).then_some(at)
         };
