@@ -1,15 +1,16 @@
 //! The measurements of a bin in few numbers, where there are too many of them to be kept.
 //!
 //! Values that follow one another in size are put together in clusters, of which number, mean, Σ(v − mean)² and Σσ² are kept; clusters are
-//! small at both ends and grow towards the median, so that a wild value stays by itself:
+//! small at both ends and grow towards the median, and none holds both values that take part in the mean and others:
 //!
 //! ```text
 //! k(q₂) − k(q₁) ≤ 1      k(q) = δ/(2π) asin(2q − 1)      q₁, q₂: parts of the values below and up to the cluster
 //! ```
 //!
 //! The median is linear between the middles of clusters, and which clusters take part in the mean is asked of their means. Sums over those
-//! that do are exact. Of 10 000 normal values the mean is off by less than a tenth of its standard error from that of [`super::bins`], which
-//! is asked as long as all measurements are kept; of as few values as clusters there may be it is the same.
+//! that do are exact. Of 10 000 normal values and a few wild ones the mean is off by less than a tenth of its standard error from that of
+//! [`super::bins`], which is asked as long as all measurements are kept; with heavy tails, where many values lie about the end of the reach, it may
+//! be off by one and a half (20 000 values, 10 % of them wild). Of as few values as clusters there may be it is the same.
 //!
 //! Reference: T. Dunning, O. Ertl, *Computing extremely accurate quantiles using t-digests*, arXiv:1902.04023 (2019).
 
@@ -17,7 +18,7 @@ use std::f64::consts::TAU;
 
 use super::bins::{FAR, MAD};
 
-/// δ: there are between half as many clusters and as many.
+/// δ: there are between half as many clusters and as many, and up to two more on either side of what takes part.
 const CLUSTERS: f64 = 50.0;
 
 /// Values that are near one another.
@@ -58,6 +59,9 @@ impl Digest {
         self.clusters.sort_by(|a, b| a.mean.total_cmp(&b.mean));
         let all: f64 = self.clusters.iter().map(|c| f64::from(c.count)).sum();
         let k = |q: f64| CLUSTERS / TAU * (2.0 * q - 1.0).clamp(-1.0, 1.0).asin();
+        // What takes part in the mean and what does not is never put together.
+        let (middle, reach) = self.reach();
+        let is_near = |c: &Cluster| (c.mean - middle).abs() <= reach;
         let mut out: Vec<Cluster> = Vec::new();
         // Values below the cluster that is being made.
         let mut below = 0.0;
@@ -67,7 +71,7 @@ impl Digest {
                 continue;
             };
             let count = f64::from(last.count) + f64::from(next.count);
-            if k((below + count) / all) - k(below / all) <= 1.0 {
+            if k((below + count) / all) - k(below / all) <= 1.0 && is_near(last) == is_near(next) {
                 *last = last.with(next);
             } else {
                 below += f64::from(last.count);
@@ -77,8 +81,8 @@ impl Digest {
         self.clusters = out;
     }
 
-    /// The mean of the values near the median, its standard error, and how many took no part: as of [`super::bins::robust_mean`].
-    pub(super) fn robust_mean(&self) -> (f64, f64, usize) {
+    /// The median, and how far from it values may be to take part in the mean.
+    fn reach(&self) -> (f64, f64) {
         let of = |value: &dyn Fn(&Cluster) -> f64| {
             let mut all: Vec<(f64, f64)> = self.clusters.iter().map(|c| (value(c), f64::from(c.count))).collect();
             all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -86,7 +90,12 @@ impl Digest {
         };
         let middle = of(&|c| c.mean);
         let deviation = MAD * of(&|c| (c.mean - middle).abs());
-        let reach = FAR * deviation.max(of(&|c| f64::from(c.variance / c.count).sqrt()));
+        (middle, FAR * deviation.max(of(&|c| f64::from(c.variance / c.count).sqrt())))
+    }
+
+    /// The mean of the values near the median, its standard error, and how many took no part: as of [`super::bins::robust_mean`].
+    pub(super) fn robust_mean(&self) -> (f64, f64, usize) {
+        let (middle, reach) = self.reach();
         let near = || self.clusters.iter().filter(|c| (c.mean - middle).abs() <= reach);
         let n: f64 = near().map(|c| f64::from(c.count)).sum();
         let all: f64 = self.clusters.iter().map(|c| f64::from(c.count)).sum();
@@ -169,7 +178,7 @@ mod tests {
         for piece in [37, 1000, 10_000] {
             let mut digest = Digest::default();
             all.chunks(piece).zip(errors.chunks(piece)).for_each(|(v, e)| digest.merge(&Digest::of(v, e)));
-            assert!(digest.clusters.len() <= 50, "{}", digest.clusters.len());
+            assert!(digest.clusters.len() <= 54, "{}", digest.clusters.len());
             let (mean, error, rejected) = digest.robust_mean();
             assert!((mean - exact).abs() < 0.1 * own, "by {piece}: {mean} {exact} ± {own}");
             assert!((error / own - 1.0).abs() < 0.02, "by {piece}: {error} {own}");
