@@ -6,7 +6,7 @@
 //! - [`noise`]: the standard error of a code; [`flat`]: vignetting from an evenly lit field.
 //! - [`merge`]: such a stack into linear radiance with its standard error and a mask.
 //! - [`camera`]: intrinsics and distortion from views of a chessboard.
-//! - [`lights`]: where the lights were, from mirror balls and diffuse ones.
+//! - [`lamp`]: lamps of which a photometric file tells the intensities; [`lights`]: where the lights were, from mirror balls and diffuse ones.
 //! - [`setup`]: camera, sphere and lights of a manifest; [`radiance`]: photographs in linear radiance; [`brdf`]: what a sphere reflects.
 //!
 //! # Conventions
@@ -19,6 +19,7 @@ pub mod brdf;
 pub mod camera;
 pub mod error;
 pub mod flat;
+pub mod lamp;
 pub mod lights;
 pub mod manifest;
 pub mod merge;

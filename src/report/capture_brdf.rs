@@ -2,12 +2,14 @@
 
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write;
+use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 
 use super::brdf_fit;
 use crate::brdf::table::{Channel, Known};
 use crate::capture::brdf::{Bin, Binned, Counts, Filled, Observations, Seen};
+use crate::capture::lamp::Pattern;
 use crate::capture::setup::Place;
 use crate::geometry::direction;
 use crate::units::significant;
@@ -24,6 +26,8 @@ pub struct StackSeen {
     pub light: String,
     /// Where that is.
     pub place: Place,
+    /// How that shines, where it does not shine alike to all sides.
+    pub pattern: Option<Arc<Pattern>>,
     /// What became of the pixels.
     pub counts: Counts,
     /// Strength of the light per band, over the radiance of a sample of 1 at 1 s.

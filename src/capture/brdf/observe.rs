@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::surface::{Cylinder, Hit, Plane, Sphere, Surface};
 use crate::capture::camera::Camera;
+use crate::capture::lamp::Pattern;
 use crate::capture::merge::State;
 use crate::capture::radiance::{Radiance, Strip};
 use crate::capture::setup::{self, Place};
@@ -50,7 +51,9 @@ pub struct Scene {
     axes: DMat3,
     surface: Arc<dyn Surface>,
     /// Columns and rows of the pictures, and by pixel whether the point sees too much of the object itself; of surfaces that are not convex.
-    crowded: OnceLock<(usize, usize, Vec<bool>)>,
+    crowded: Arc<OnceLock<(usize, usize, Vec<bool>)>>,
+    /// Of the light, where it is near and does not shine alike to all sides.
+    pattern: Option<Arc<Pattern>>,
     radiance: setup::Radiance,
     /// Of the places that a sample is a mean over, px².
     pixel_variance: f64,
@@ -86,7 +89,7 @@ pub struct View {
     pub incident: DVec3,
     /// ω_o.
     pub outgoing: DVec3,
-    /// cosθ_i/d², d = 1 for a distant light: irradiance over the strength of the light; 0 in the cast shadow.
+    /// cosθ_i/d², times the lamp's pattern, d = 1 for a distant light: irradiance over the strength of the light; 0 in the cast shadow.
     pub irradiance: f64,
 }
 
@@ -208,13 +211,20 @@ impl Scene {
             position,
             axes,
             surface,
-            crowded: OnceLock::new(),
+            crowded: Arc::default(),
+            pattern: None,
             radiance: manifest.radiance,
             pixel_variance: camera.pixel_variance(),
             pixel_variance_sd: if camera.places_per_side.is_some() { 0.0 } else { PIXEL_SD },
             placement_px: 0.0,
             limits,
         })
+    }
+
+    /// The same under a near light that shines as `pattern` says, relative to its strength; `None`: alike to all sides.
+    #[must_use]
+    pub fn lit_by(&self, pattern: Option<Arc<Pattern>>) -> Self {
+        Self { pattern, ..self.clone() }
     }
 
     /// What the object is: `sphere`.
@@ -253,7 +263,10 @@ impl Scene {
         let (incident, distance2) = light(place, hit);
         let (t, b) = tangents(hit.normal);
         let local = |d: DVec3| DVec3::new(t.dot(d), b.dot(d), hit.normal.dot(d));
-        let irradiance = hit.normal.dot(incident) / distance2;
+        let mut irradiance = hit.normal.dot(incident) / distance2;
+        if let (Some(pattern), Place::Near(_)) = (&self.pattern, place) {
+            irradiance *= pattern.towards(hit.point);
+        }
         View { incident: local(incident), outgoing: local(outgoing), irradiance }
     }
 
@@ -420,7 +433,7 @@ impl Scene {
                     counts.silhouette += 1;
                     continue;
                 }
-                if view.incident.z < least_i {
+                if view.incident.z < least_i || view.irradiance <= 0.0 {
                     counts.attached_shadow += 1;
                     continue;
                 }

@@ -13,6 +13,21 @@ pub struct Light {
     pub place: Place,
     /// Radiant intensity (near), W/sr, or irradiance of a surface that faces it (distant), W/m²; per band or one for all.
     pub strength: Option<Vec<f64>>,
+    /// Of a near light that does not shine alike to all sides: its strength is that along its axis then.
+    pub lamp: Option<Lamp>,
+}
+
+/// A photometric file, and how the lamp is turned.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lamp {
+    /// An LM-63, EULUMDAT or TM-33 file. Without a stated intensity its own are used, in its unit.
+    pub file: String,
+    /// A point on its axis (γ = 0), m.
+    pub aim_m: [f64; 3],
+    /// Towards C0; of lamps that are the same all around their axis it is not needed.
+    #[serde(default)]
+    pub c0: Option<[f64; 3]>,
 }
 
 /// Where a light is.
@@ -42,6 +57,9 @@ struct Stated {
     /// Irradiance of a surface that faces a distant light, W/m², per band or one for all.
     #[serde(default)]
     irradiance_w_per_m2: Option<PerBand>,
+    /// Of a near light: a photometric file and how the lamp is turned; `intensity_w_per_sr` is that along its axis then.
+    #[serde(default)]
+    lamp: Option<Lamp>,
 }
 
 /// One number, or one per band.
@@ -86,7 +104,13 @@ impl TryFrom<Stated> for Light {
         if strength.as_ref().is_some_and(|s| s.is_empty() || s.iter().any(|v| !(*v > 0.0 && v.is_finite()))) {
             return Err(format!("light `{}` with a strength of {strength:?}; expected numbers above 0", s.name));
         }
-        Ok(Self { name: s.name, place, strength })
+        if s.lamp.is_some() && matches!(place, Place::Distant(_)) {
+            return Err(format!("light `{}` with `lamp` and `direction`; expected `position_m` of the lamp", s.name));
+        }
+        if s.lamp.iter().flat_map(|l| l.aim_m.iter().chain(l.c0.iter().flatten())).any(|v| !v.is_finite()) {
+            return Err(format!("light `{}` with a `lamp` turned to no number; expected finite numbers", s.name));
+        }
+        Ok(Self { name: s.name, place, strength, lamp: s.lamp })
     }
 }
 

@@ -4,7 +4,7 @@ mod light;
 mod number;
 mod object;
 
-pub use light::{Flat, Light, Place, Reference};
+pub use light::{Flat, Lamp, Light, Place, Reference};
 pub(super) use number::maybe_positive;
 pub use object::{Ball, Cylinder, Mesh, Plane, Sphere};
 

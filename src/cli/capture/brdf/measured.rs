@@ -1,6 +1,7 @@
 //! From the photographs to all measurements: what `capture brdf` and `trade capture` have in common.
 
 use super::align::align;
+use super::lamps::patterns;
 use super::run::{Run, mask_of};
 use super::scene;
 use crate::brdf::table::Resolution;
@@ -35,8 +36,8 @@ pub(super) fn measure(
     scene.placement_px = aligned.as_ref().map_or(0.0, |e| e.standard_error_px);
     let mask = mask.or_else(|| photos.manifest.mask().map(|m| photos.path(m)));
     let mask = mask.map(|path| mask_of(photos, &path)).transpose()?;
-    let (seen, strengths) = (Vec::new(), Vec::new());
-    let mut run = Run { scene, mask, room, seen, all: None, resolution, strengths, size: (0, 0) };
+    let (seen, strengths, patterns) = (Vec::new(), Vec::new(), patterns(photos)?);
+    let mut run = Run { scene, mask, room, seen, all: None, resolution, patterns, strengths, size: (0, 0) };
     let scale = run.strengths(photos)?;
     run.observe(photos)?;
     let Some(all) = run.all.take() else {

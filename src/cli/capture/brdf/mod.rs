@@ -3,6 +3,7 @@
 mod align;
 mod files;
 mod fill;
+mod lamps;
 mod measured;
 mod mesh;
 mod report;

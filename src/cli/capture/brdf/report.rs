@@ -125,6 +125,7 @@ fn maps(
     // The values of a relative result were multiplied by the factor: the lights are weaker by it.
     let strength: Vec<f64> = seen.strength.iter().map(|s| s / factor).collect();
     let Some(mut growing) = scene.empty_maps(taking.size, bands, SIDE) else { return Ok(Vec::new()) };
+    let scene = scene.lit_by(seen.pattern.clone());
     taking.strips(photos, room, &mut |strip| {
         scene.add_to_maps(&mut growing, strip, seen.place, &strength, fit.brdf.as_ref());
         Ok(())

@@ -2,11 +2,13 @@
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::message;
 use super::shots::{Shot, Taking, shots};
 use crate::brdf::table::{Channel, Resolution};
 use crate::capture::brdf::{Counts, Gathered, Observations, Scene, Seen, reference_factor_sd, strength_from};
+use crate::capture::lamp::Pattern;
 use crate::capture::manifest::Shows;
 use crate::capture::setup::{Light, Place};
 use crate::capture::{Error, Photo};
@@ -39,6 +41,8 @@ pub(super) struct Run {
     pub all: Option<Gathered>,
     /// Of the bins.
     pub resolution: Resolution,
+    /// Of each light of the manifest, where it does not shine alike to all sides.
+    pub patterns: Vec<Option<Arc<Pattern>>>,
     /// Of each light of the manifest, per band or one for all.
     pub strengths: Vec<Vec<f64>>,
     /// Columns and rows of the pictures.
@@ -53,7 +57,7 @@ impl Run {
         if let Some(reference) = photos.manifest.reference.clone() {
             let (mut uneven, mut light_sd) = (0.0_f64, 0.0_f64);
             let of_reference = shots(&photos.manifest, Shows::Reference)?;
-            for light in &lights {
+            for (light, pattern) in lights.iter().zip(&self.patterns) {
                 let Some(shot) = of_reference.iter().find(|s| s.light == light.name) else {
                     if of_object.iter().any(|s| s.light == light.name) {
                         return Err(Failure::Message(format!(
@@ -68,7 +72,8 @@ impl Run {
                 let name = picture.name.clone();
                 let ones = vec![1.0; picture.channels];
                 let mut seen = Gathered::new(Observations::new(picture.channels), self.resolution, DRAWN);
-                let (scene, mask, mut counts) = (&self.scene, self.mask.as_deref(), Counts::default());
+                let scene = self.scene.lit_by(pattern.clone());
+                let (mask, mut counts) = (self.mask.as_deref(), Counts::default());
                 picture.strips(photos, &self.room, &mut |strip| {
                     let found = scene.observe_rows(strip, light.place, &ones, mask, &mut |s| seen.push(s));
                     counts.add(&found.map_err(|e| Failure::Message(format!("{name}: {e}")))?);
@@ -180,7 +185,8 @@ impl Run {
             [one] => vec![*one; bands],
             each => each.to_vec(),
         };
-        let (scene, mask, mut counts) = (&self.scene, self.mask.as_deref(), Counts::default());
+        let scene = self.scene.lit_by(self.patterns[light].clone());
+        let (mask, mut counts) = (self.mask.as_deref(), Counts::default());
         let mut failed = None;
         let read = picture.strips(photos, &self.room, &mut |strip| {
             match scene.observe_rows(strip, place, &strength, mask, &mut |s| all.push(s)) {
@@ -201,6 +207,7 @@ impl Run {
             name: shot.name.clone(),
             light: shot.light.clone(),
             place,
+            pattern: self.patterns[light].clone(),
             counts,
             strength,
             deviation: None,
@@ -228,7 +235,8 @@ impl Run {
         let shots = shots(&photos.manifest, Shows::Object)?;
         for seen in self.seen.iter().filter(|s| s.counts.valid > 0) {
             let Some(shot) = shots.iter().find(|s| s.name == seen.name) else { continue };
-            let (scene, mask, room, mut rows) = (&self.scene, self.mask.as_deref(), &mut self.room, String::new());
+            let scene = self.scene.lit_by(seen.pattern.clone());
+            let (mask, room, mut rows) = (self.mask.as_deref(), &mut self.room, String::new());
             photos.untold(|photos| {
                 shot.open(photos, room)?.strips(photos, room, &mut |strip| {
                     rows.clear();
