@@ -106,7 +106,7 @@ fn the_synthetic_mirror_ball_points_at_its_lamps() {
         let name = format!("mirror_L{k:02}.exr");
         let found = highlight::find(&name, &photo(&folder.join(&name)), &outline, &view, &ball).expect("a lamp");
         // The first lamp stands in the picture itself, before the ball, larger than its image: a disc of 0.06 m, of which a part is seen.
-        let disc_px = 0.06 * 1712.935_997 / (8.0 - lamp.z);
+        let disc_px = 0.06 * 1_712.935_997 / (8.0 - lamp.z);
         let itself = found.lamp.map(|seen| seen.distance(view.pixel(*lamp)));
         assert!(if k == 0 { itself.is_some_and(|d| d < disc_px) } else { itself.is_none() }, "{name}: {found:?}");
         let ray = ball.reflected(view.ray(found.pixel).expect("a ray")).expect("in the ball");
