@@ -119,11 +119,11 @@ impl Vignetting {
         shape(&self.coefficients, (pixel - self.centre).length_squared() / self.unit_px.powi(2))
     }
 
-    /// Takes it out of a picture: values and standard errors.
-    pub fn undo(&self, picture: &mut Radiance) {
+    /// Takes it out of rows of a picture, of which the first has the number `top`: values and standard errors.
+    pub fn undo(&self, picture: &mut Radiance, top: usize) {
         let (w, n) = (picture.width, picture.channels);
         #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
-        let factor = |at: usize| self.at(DVec2::new((at % w) as f64, (at / w) as f64)).max(0.05).recip() as f32;
+        let factor = |at: usize| self.at(DVec2::new((at % w) as f64, (top + at / w) as f64)).max(0.05).recip() as f32;
         let planes = std::iter::once(&mut picture.values).chain(picture.errors.as_mut());
         for plane in planes {
             for (at, pixel) in plane.chunks_exact_mut(n).enumerate() {
@@ -167,7 +167,7 @@ mod tests {
         assert!((found.level[1] / 3.0 - 1.0).abs() < 5e-4 && found.rms < 5e-4, "{found:?}");
         let mut picture = field(|r| (r / 200.0).atan().cos().powi(4));
         let found = Vignetting::fit("flat", &picture, Some(centre)).unwrap();
-        found.undo(&mut picture);
+        found.undo(&mut picture, 0);
         // cos⁴ is (1 + t)⁻² with t = (r/200)² up to 0.15: a cubic leaves 120 t⁴/(4! 2⁷) = 2e-5 at best, least squares several times that at
         // the corners; means over blocks of 2.5 pixels shift r² by 0.8 px², 2 · 0.8/200² = 4e-5.
         for v in picture.values.chunks_exact(3) {

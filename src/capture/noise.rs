@@ -8,8 +8,11 @@
 //! deviations are edges and do not count. Developed photographs whose noise was smoothed show less than there is: the result is a least value
 //! then.
 
-use super::Photo;
+use std::io::{Read, Seek};
+
 use super::response::LEVELS;
+use super::rows::PhotoRows;
+use super::{Error, Photo};
 
 /// Quarters of codes up to which residuals are counted.
 const QUARTERS: usize = 256;
@@ -19,6 +22,8 @@ const AROUND: usize = 3;
 const ENOUGH: f64 = 100.0;
 /// Robust standard deviations beyond which a residual is an edge.
 const FAR: f64 = 4.0;
+/// Samples that are looked at at once.
+const SAMPLES_AT_ONCE: usize = 1 << 22;
 /// Standard deviation of a rounding to whole codes.
 const ROUNDING: f64 = 0.288_675_134_594_812_9;
 
@@ -79,6 +84,25 @@ impl Residuals {
                     self.counts[c][mean.min(LEVELS - 1)][off.min(QUARTERS - 1)] += 1;
                 }
             }
+        }
+    }
+
+    /// Adds a photograph by its rows.
+    ///
+    /// # Errors
+    /// [`Error::Undecodable`] where the file is damaged; the rows before count.
+    pub fn add_rows<R: Read + Seek + Send>(&mut self, rows: &mut PhotoRows<R>) -> Result<(), Error> {
+        let at_once = (SAMPLES_AT_ONCE / (rows.width * rows.channels).max(1)).max(1);
+        let mut piece = rows.next(at_once)?;
+        loop {
+            self.add(&piece);
+            let below = rows.next(at_once)?;
+            if below.height == 0 {
+                return Ok(());
+            }
+            // The last row has no row below it yet, and needs the one above.
+            piece = piece.rows(piece.height.saturating_sub(2)..piece.height);
+            piece.append(&below);
         }
     }
 

@@ -1,12 +1,10 @@
 //! A photograph: its codes, and the exposure time in its EXIF data.
 
-use std::io::Cursor;
-
-use tiff::decoder::{Decoder, DecodingResult};
+use std::io::{BufRead, Cursor, Seek};
+use std::ops::Range;
 
 use super::Error;
-use crate::image::format::exr;
-use crate::image::{Region, Source};
+use super::rows::{PhotoRows, undecodable};
 
 /// The codes of a photograph.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,23 +36,35 @@ impl Photo {
     /// # Errors
     /// [`Error::Undecodable`].
     pub fn decode(bytes: &[u8]) -> Result<Self, Error> {
-        match bytes {
-            [0x76, 0x2f, 0x31, 0x01, ..] => return linear_exr(bytes),
-            [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => return linear_tiff(bytes),
-            _ => {}
-        }
-        let wrong = |e: image::ImageError| Error::Undecodable { reason: e.to_string() };
-        let picture = image::load_from_memory(bytes).map_err(wrong)?;
-        let (width, height) = (picture.width() as usize, picture.height() as usize);
-        let grey = !picture.color().has_color();
-        let deep = picture.color().bytes_per_pixel() / picture.color().channel_count() > 1;
-        let codes = match (grey, deep) {
-            (true, false) => Codes::Eight(picture.into_luma8().into_raw()),
-            (true, true) => Codes::Sixteen(picture.into_luma16().into_raw()),
-            (false, false) => Codes::Eight(picture.into_rgb8().into_raw()),
-            (false, true) => Codes::Sixteen(picture.into_rgb16().into_raw()),
+        let mut rows = PhotoRows::open(Cursor::new(bytes))?;
+        rows.next(rows.height)
+    }
+
+    /// Some of its rows.
+    #[must_use]
+    pub fn rows(&self, rows: Range<usize>) -> Self {
+        let samples = rows.start * self.width * self.channels..rows.end * self.width * self.channels;
+        let codes = match &self.codes {
+            Codes::Eight(v) => Codes::Eight(v[samples].to_vec()),
+            Codes::Sixteen(v) => Codes::Sixteen(v[samples].to_vec()),
+            Codes::Linear(v) => Codes::Linear(v[samples].to_vec()),
         };
-        Ok(Self { width, height, channels: if grey { 1 } else { 3 }, codes })
+        Self { height: rows.len(), codes, ..*self }
+    }
+
+    /// Adds rows below it.
+    ///
+    /// # Panics
+    /// For rows of another photograph: of another width, or of codes of another kind.
+    pub fn append(&mut self, below: &Self) {
+        assert_eq!((self.width, self.channels), (below.width, below.channels), "rows of one photograph");
+        self.height += below.height;
+        match (&mut self.codes, &below.codes) {
+            (Codes::Eight(v), Codes::Eight(more)) => v.extend_from_slice(more),
+            (Codes::Sixteen(v), Codes::Sixteen(more)) => v.extend_from_slice(more),
+            (Codes::Linear(v), Codes::Linear(more)) => v.extend_from_slice(more),
+            _ => panic!("rows of one photograph"),
+        }
     }
 
     /// Code of sample `i`, 0 to 255.
@@ -76,7 +86,7 @@ impl Photo {
     /// Size and channels in words.
     #[must_use]
     pub fn size(&self) -> String {
-        format!("{} × {} pixels in {} channel(s)", self.width, self.height, self.channels)
+        size(self.width, self.height, self.channels)
     }
 
     /// Rec. 709 luma of the codes, 0 to 255: for finding patterns, not for measuring.
@@ -91,54 +101,26 @@ impl Photo {
     }
 }
 
-fn undecodable(reason: impl ToString) -> Error {
-    Error::Undecodable { reason: reason.to_string() }
+/// Size and channels in words.
+pub(super) fn size(width: usize, height: usize, channels: usize) -> String {
+    format!("{width} × {height} pixels in {channels} channel(s)")
 }
 
-fn linear_tiff(bytes: &[u8]) -> Result<Photo, Error> {
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(undecodable)?;
-    let (width, height) = decoder.dimensions().map_err(undecodable)?;
-    let channels = match decoder.colortype().map_err(undecodable)? {
-        tiff::ColorType::Gray(_) => 1,
-        tiff::ColorType::RGB(_) => 3,
-        other => return Err(undecodable(format!("a TIFF of {other:?}; expected grey or RGB"))),
-    };
-    let values = match decoder.read_image().map_err(undecodable)? {
-        DecodingResult::U16(v) => v.into_iter().map(|v| f32::from(v) / 65535.0).collect(),
-        DecodingResult::F32(v) => v,
-        _ => return Err(undecodable("a TIFF of other than 16 bits or 32-bit floats")),
-    };
-    let (width, height) = (width as usize, height as usize);
-    if values.len() != width * height * channels {
-        return Err(undecodable("a TIFF of separate planes"));
-    }
-    Ok(Photo { width, height, channels, codes: Codes::Linear(values) })
-}
-
-fn linear_exr(bytes: &[u8]) -> Result<Photo, Error> {
-    let mut source = exr::open(Cursor::new(bytes)).map_err(undecodable)?.value;
-    let description = source.description().clone();
-    let number = |name: &str| description.channels.iter().position(|c| c.name == name);
-    let rgb: Vec<usize> = ["R", "G", "B"].into_iter().filter_map(number).collect();
-    let numbers = match (rgb.len(), number("Y")) {
-        (3, _) => rgb,
-        (_, Some(grey)) => vec![grey],
-        _ => return Err(undecodable("an EXR without channels R, G, B or Y")),
-    };
-    let (width, height, channels) = (description.width, description.height, numbers.len());
-    let mut rows = vec![0.0; width * channels];
-    let mut values = Vec::with_capacity(width * height * channels);
-    for y in 0..height {
-        source.read(Region::rows(&description, y, 1), &numbers, &mut rows).map_err(undecodable)?;
-        values.extend((0..width).flat_map(|x| (0..channels).map(move |c| c * width + x)).map(|i| rows[i]));
-    }
-    Ok(Photo { width, height, channels, codes: Codes::Linear(values) })
+/// Decodes a file that cannot be decoded by rows: JPEG.
+pub(super) fn decode_whole(input: impl BufRead + Seek) -> Result<Photo, Error> {
+    let mut reader = image::ImageReader::new(input).with_guessed_format().map_err(undecodable)?;
+    reader.no_limits();
+    let picture = reader.decode().map_err(undecodable)?;
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let grey = !picture.color().has_color();
+    let codes = Codes::Eight(if grey { picture.into_luma8().into_raw() } else { picture.into_rgb8().into_raw() });
+    Ok(Photo { width, height, channels: if grey { 1 } else { 3 }, codes })
 }
 
 /// The exposure time that the EXIF data of a photograph state, s; `None` where there are none or no time in them.
 #[must_use]
-pub fn exif_time_s(bytes: &[u8]) -> Option<f64> {
-    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(bytes)).ok()?;
+pub fn exif_time_s(input: &mut (impl BufRead + Seek)) -> Option<f64> {
+    let exif = exif::Reader::new().read_from_container(input).ok()?;
     let field = exif.get_field(exif::Tag::ExposureTime, exif::In::PRIMARY)?;
     match &field.value {
         exif::Value::Rational(times) => times.first().map(exif::Rational::to_f64).filter(|t| t.is_finite() && *t > 0.0),

@@ -1,12 +1,14 @@
 //! A picture in linear radiance: what `capture merge` writes, any EXR, or a 16-bit linear TIFF with its exposure time.
 
-use std::io::Cursor;
+use std::io::{Cursor, Read, Seek, SeekFrom};
+use std::ops::Range;
 
 use super::merge::State;
 use super::photo::Codes;
-use super::{Error, Photo, setup};
-use crate::image::format::exr;
-use crate::image::{Region, Source};
+use super::rows::{PhotoRows, exr_channels, interleaved, undecodable};
+use super::{Error, setup};
+use crate::image::Source;
+use crate::image::format::exr::{self, Exr};
 
 /// Samples in rows from the top, channels interleaved.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,16 +35,38 @@ impl Radiance {
     /// # Errors
     /// [`Error::Undecodable`], [`Error::NotLinear`] for codes of unknown response.
     pub fn decode(bytes: &[u8], time_s: f64) -> Result<Self, Error> {
-        let photo = Photo::decode(bytes)?;
-        let Codes::Linear(values) = photo.codes else {
-            return Err(Error::NotLinear);
-        };
-        let Photo { width, height, channels, .. } = photo;
-        let exr = bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]);
-        let planes = |prefix| if exr { planes(bytes, prefix, channels) } else { Ok(None) };
-        let errors = planes("standard_error.")?;
-        let states = planes("state.")?.map(|all| all.into_iter().map(state).collect());
-        Ok(Self { width, height, channels, time_s, values, errors, states })
+        let mut rows = RadianceRows::open(Cursor::new(bytes), time_s)?;
+        rows.next(rows.height)
+    }
+
+    /// Some of its rows.
+    #[must_use]
+    pub fn rows(&self, rows: Range<usize>) -> Self {
+        let samples = rows.start * self.width * self.channels..rows.end * self.width * self.channels;
+        Self {
+            height: rows.len(),
+            values: self.values[samples.clone()].to_vec(),
+            errors: self.errors.as_ref().map(|e| e[samples.clone()].to_vec()),
+            states: self.states.as_ref().map(|s| s[samples].to_vec()),
+            ..*self
+        }
+    }
+
+    /// Adds rows below it.
+    ///
+    /// # Panics
+    /// For rows of another picture: of another width, or with errors or states where this one has none.
+    pub fn append(&mut self, below: &Self) {
+        assert_eq!((self.width, self.channels), (below.width, below.channels), "rows of one picture");
+        assert_eq!(
+            (self.errors.is_some(), self.states.is_some()),
+            (below.errors.is_some(), below.states.is_some()),
+            "rows of one picture"
+        );
+        self.height += below.height;
+        self.values.extend_from_slice(&below.values);
+        self.errors.iter_mut().for_each(|e| e.extend_from_slice(below.errors.as_deref().unwrap_or_default()));
+        self.states.iter_mut().for_each(|s| s.extend_from_slice(below.states.as_deref().unwrap_or_default()));
     }
 
     /// Grey pictures of one view, one per band, as one picture of radiance (its time is 1 s). Each sample has the state and, unless it has its own,
@@ -143,20 +167,185 @@ fn state(number: f32) -> State {
     }
 }
 
-/// The planes whose names begin with `prefix`, interleaved; `None` unless there is one for each channel.
-fn planes(bytes: &[u8], prefix: &str, channels: usize) -> Result<Option<Vec<f32>>, Error> {
-    let wrong = |e: &dyn std::fmt::Display| Error::Undecodable { reason: e.to_string() };
-    let mut source = exr::open(Cursor::new(bytes)).map_err(|e| wrong(&e))?.value;
-    let description = source.description().clone();
-    let names: &[&str] = if channels == 1 { &["Y"] } else { &["R", "G", "B"] };
-    let number = |name: &&str| description.channels.iter().position(|c| c.name == format!("{prefix}{name}"));
-    let Some(numbers) = names.iter().map(number).collect::<Option<Vec<usize>>>() else { return Ok(None) };
-    let width = description.width;
-    let mut rows = vec![0.0; width * channels];
-    let mut values = Vec::with_capacity(width * description.height * channels);
-    for y in 0..description.height {
-        source.read(Region::rows(&description, y, 1), &numbers, &mut rows).map_err(|e| wrong(&e))?;
-        values.extend((0..width * channels).map(|i| rows[i % channels * width + i / channels]));
+/// A picture in linear radiance that is being decoded, by rows from the top.
+pub struct RadianceRows<R: Read + Seek> {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// 1 or 3.
+    pub channels: usize,
+    time_s: f64,
+    from: From<R>,
+}
+
+enum From<R: Read + Seek> {
+    /// With rows given so far, and the numbers of the channels that have values, errors and states.
+    Exr(Box<Exr<R>>, usize, [Option<Vec<usize>>; 3]),
+    Other(PhotoRows<R>),
+}
+
+impl<R: Read + Seek + Send> RadianceRows<R> {
+    /// Opens a picture whose exposure time was `time_s`.
+    ///
+    /// # Errors
+    /// [`Error::Undecodable`], [`Error::NotLinear`] for codes of unknown response.
+    pub fn open(mut input: R, time_s: f64) -> Result<Self, Error> {
+        let mut start = Vec::new();
+        input.by_ref().take(4).read_to_end(&mut start).map_err(undecodable)?;
+        input.seek(SeekFrom::Start(0)).map_err(undecodable)?;
+        if start != [0x76, 0x2f, 0x31, 0x01] {
+            let rows = PhotoRows::open(input)?;
+            if !rows.is_linear {
+                return Err(Error::NotLinear);
+            }
+            let (width, height, channels) = (rows.width, rows.height, rows.channels);
+            return Ok(Self { width, height, channels, time_s, from: From::Other(rows) });
+        }
+        let source = exr::open(input).map_err(undecodable)?.value;
+        let description = source.description();
+        let values = exr_channels(description)?;
+        let (width, height, channels) = (description.width, description.height, values.len());
+        // All of the channels have them, or none.
+        let beside = |prefix: &str| {
+            let number = |c: &usize| {
+                let name = format!("{prefix}{}", description.channels[*c].name);
+                description.channels.iter().position(|c| c.name == name)
+            };
+            values.iter().map(number).collect::<Option<Vec<usize>>>()
+        };
+        let (errors, states) = (beside("standard_error."), beside("state."));
+        let from = From::Exr(Box::new(source), 0, [Some(values), errors, states]);
+        Ok(Self { width, height, channels, time_s, from })
     }
-    Ok(Some(values))
+
+    /// The next rows, as many or what is left.
+    ///
+    /// # Errors
+    /// [`Error::Undecodable`] where the file is damaged there. What was given before was sound.
+    pub fn next(&mut self, rows: usize) -> Result<Radiance, Error> {
+        let (height, values, errors, states) = match &mut self.from {
+            From::Other(photo) => {
+                let part = photo.next(rows)?;
+                let Codes::Linear(values) = part.codes else { return Err(Error::NotLinear) };
+                (part.height, values, None, None)
+            }
+            From::Exr(source, given, numbers) => {
+                let rows = rows.min(self.height - *given);
+                let mut planes = [None, None, None];
+                for (plane, numbers) in planes.iter_mut().zip(numbers) {
+                    if let Some(numbers) = numbers {
+                        *plane = Some(interleaved(source.as_mut(), numbers, *given, rows)?);
+                    }
+                }
+                *given += rows;
+                let [values, errors, states] = planes;
+                let states = states.map(|all| all.into_iter().map(state).collect());
+                (rows, values.unwrap_or_default(), errors, states)
+            }
+        };
+        Ok(Radiance { width: self.width, height, channels: self.channels, time_s: self.time_s, values, errors, states })
+    }
+}
+
+/// Some rows of a picture, with the row above and the one below where the picture has them.
+#[derive(Debug, Clone)]
+pub struct Strip<'a> {
+    /// The rows.
+    pub picture: &'a Radiance,
+    /// Number of the first of them in the whole picture.
+    pub top: usize,
+    /// Rows of the whole picture.
+    pub height: usize,
+    /// The rows that it is about, by their numbers in the whole picture: together with the other strips all of them, each once.
+    pub rows: Range<usize>,
+}
+
+impl<'a> Strip<'a> {
+    /// A whole picture.
+    #[must_use]
+    pub fn whole(picture: &'a Radiance) -> Self {
+        Self { picture, top: 0, height: picture.height, rows: 0..picture.height }
+    }
+
+    /// Place of a pixel of the whole picture among those of `picture`.
+    #[must_use]
+    pub fn at(&self, x: usize, y: usize) -> usize {
+        (y - self.top) * self.picture.width + x
+    }
+}
+
+/// Makes strips of pieces that follow one another.
+#[derive(Debug, Clone)]
+pub struct Strips {
+    held: Option<Radiance>,
+    top: usize,
+    height: usize,
+    done: usize,
+}
+
+impl Strips {
+    /// Of a picture with so many rows.
+    #[must_use]
+    pub fn new(height: usize) -> Self {
+        Self { held: None, top: 0, height, done: 0 }
+    }
+
+    /// The next piece; the strip is of the rows that now have a row below them.
+    pub fn add(&mut self, piece: Radiance) -> Strip<'_> {
+        let held = match self.held.take() {
+            None => piece,
+            Some(before) => {
+                // The rows from the one above those that are not done yet.
+                let first = self.done.saturating_sub(1);
+                let mut held = before.rows(first - self.top..before.height);
+                self.top = first;
+                held.append(&piece);
+                held
+            }
+        };
+        let end = self.top + held.height;
+        let rows = self.done..if end < self.height { end.saturating_sub(1).max(self.done) } else { end };
+        self.done = rows.end;
+        let picture = &*self.held.insert(held);
+        Strip { picture, top: self.top, height: self.height, rows }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_have_all_rows_once_with_their_neighbours() {
+        let (width, height) = (3, 17);
+        let picture = Radiance {
+            width,
+            height,
+            channels: 1,
+            time_s: 1.0,
+            values: (0..51_u8).map(f32::from).collect(),
+            errors: Some((0..51_u8).map(|v| 0.1 * f32::from(v)).collect()),
+            states: None,
+        };
+        for piece in [1, 2, 5, 16, 17] {
+            let mut strips = Strips::new(height);
+            let mut seen = Vec::new();
+            for first in (0..height).step_by(piece) {
+                let strip = strips.add(picture.rows(first..(first + piece).min(height)));
+                for y in strip.rows.clone() {
+                    for near in [y.saturating_sub(1), y, (y + 1).min(height - 1)] {
+                        let at = strip.at(1, near);
+                        assert_eq!(strip.picture.values[at], picture.values[near * width + 1], "{piece} {y}");
+                        assert_eq!(
+                            strip.picture.errors.as_ref().map(|e| e[at]),
+                            Some(picture.errors.as_ref().expect("errors")[near * width + 1])
+                        );
+                    }
+                    seen.push(y);
+                }
+            }
+            assert_eq!(seen, (0..height).collect::<Vec<_>>(), "by {piece}");
+        }
+    }
 }

@@ -14,6 +14,8 @@ use crate::capture::response::Curve;
 const MOST_LOBES: usize = 5;
 /// Dots of a row at most.
 const MOST_DOTS: usize = 120;
+/// Cosine of 88°: models that grow without bound towards the horizon would fill the axis.
+const GRAZING: f64 = 0.034_899_496_702_500_97;
 /// Part of the pixels of a picture that are brighter than its white.
 const GLARE: f64 = 0.01;
 
@@ -111,7 +113,7 @@ pub fn halves_panel(binned: &Binned, brdf: &dyn Brdf, band: usize, name: &str) -
             let theta_h = 0.25 * f64::from(n);
             let half = HalfDiff { theta_h: theta_h.to_radians(), phi_h: 0.0, theta_d, phi_d: FRAC_PI_2 };
             let (i, o) = half.directions();
-            if i.z > 0.0 && o.z > 0.0 {
+            if i.z.min(o.z) > GRAZING {
                 brdf.evaluate(i, o, &mut f);
                 line.push((theta_h, f[band]));
             }

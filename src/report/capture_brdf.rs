@@ -2,12 +2,14 @@
 
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write;
+use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 
 use super::brdf_fit;
 use crate::brdf::table::{Channel, Known};
-use crate::capture::brdf::{Bin, Binned, Counts, Filled, Observations};
+use crate::capture::brdf::{Bin, Binned, Counts, Filled, Observations, Seen};
+use crate::capture::lamp::Pattern;
 use crate::capture::setup::Place;
 use crate::geometry::direction;
 use crate::units::significant;
@@ -24,6 +26,8 @@ pub struct StackSeen {
     pub light: String,
     /// Where that is.
     pub place: Place,
+    /// How that shines, where it does not shine alike to all sides.
+    pub pattern: Option<Arc<Pattern>>,
     /// What became of the pixels.
     pub counts: Counts,
     /// Strength of the light per band, over the radiance of a sample of 1 at 1 s.
@@ -114,8 +118,10 @@ pub struct Answer<'a> {
     pub seen: &'a [StackSeen],
     /// What absolute values rest on.
     pub scale: &'a Scale,
-    /// The measurements.
+    /// The measurements, or an even draw of very many.
     pub all: &'a Observations,
+    /// How many there were.
+    pub measurements: usize,
     /// The same in bins.
     pub binned: &'a Binned,
     /// The bins that were filled, where that was asked for.
@@ -173,7 +179,7 @@ pub fn object(a: &Answer<'_>) -> Value {
         "lights": a.seen.iter().map(light).collect::<Vec<_>>(),
         "stacks": a.seen.iter().map(stack).collect::<Vec<_>>(),
         "pixels": sum,
-        "measurements": a.all.len(),
+        "measurements": a.measurements,
         "standard_errors_stated": a.all.has_errors(),
         "bins": {
             "above_horizon": a.binned.above_horizon, "covered": a.binned.covered,
@@ -182,6 +188,9 @@ pub fn object(a: &Answer<'_>) -> Value {
         "coverage_fraction": a.binned.coverage_fraction(),
         "fits": [],
     });
+    if a.all.len() < a.measurements {
+        out["drawn_measurements"] = a.all.len().into();
+    }
     if let Some(filling) = a.filling {
         out["filled"] = filling.object();
     }
@@ -196,27 +205,28 @@ pub fn object(a: &Answer<'_>) -> Value {
     out
 }
 
-/// All measurements, a row each: stack and pixel by `places`, φ that of the camera less that of the light.
+/// The header of the table of all measurements.
 #[must_use]
-pub fn measurements(seen: &[StackSeen], places: &[(usize, (usize, usize))], all: &Observations) -> String {
-    let bands = all.channels.len();
+pub fn measurements_header(channels: &[Channel]) -> String {
     let mut out = String::from("stack,x,y,theta_i_deg,theta_o_deg,phi_deg");
     // Writing to a string cannot fail.
-    for channel in &all.channels {
+    for channel in channels {
         let _ = write!(out, ",f_{channel}_per_sr,standard_error_{channel}_per_sr");
     }
     out.push('\n');
-    for (n, ((stack, (x, y)), (i, o))) in places.iter().zip(&all.directions).enumerate() {
-        let phi = (direction::phi(*o) - direction::phi(*i)).to_degrees().rem_euclid(360.0);
-        let [theta_i, theta_o] = [i, o].map(|d| direction::theta(*d).to_degrees());
-        let _ = write!(out, "{},{x},{y},{theta_i},{theta_o},{phi}", seen[*stack].name);
-        let samples = n * bands..(n + 1) * bands;
-        for (value, error) in all.values[samples.clone()].iter().zip(&all.errors[samples]) {
-            let _ = write!(out, ",{value},{error}");
-        }
-        out.push('\n');
-    }
     out
+}
+
+/// A measurement as a row of it, times `factor`; φ is that of the camera less that of the light.
+pub fn measurement(out: &mut String, stack: &str, seen: &Seen<'_>, factor: f64) {
+    let (x, y) = seen.pixel;
+    let phi = (direction::phi(seen.outgoing) - direction::phi(seen.incident)).to_degrees().rem_euclid(360.0);
+    let [theta_i, theta_o] = [seen.incident, seen.outgoing].map(|d| direction::theta(d).to_degrees());
+    let _ = write!(out, "{stack},{x},{y},{theta_i},{theta_o},{phi}");
+    for (value, error) in seen.values.iter().zip(seen.errors) {
+        let _ = write!(out, ",{},{}", value * factor, error * factor);
+    }
+    out.push('\n');
 }
 
 /// The bins with values, a row each; where bins were filled, a column tells how each is known.

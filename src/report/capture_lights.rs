@@ -169,8 +169,16 @@ pub fn object(a: &Answer<'_>) -> Value {
         out
     };
     let mut adjustment = json!({"disagreement": a.adjusted.disagreement, "converged": a.adjusted.converged});
-    if (a.adjusted.zoom - 1.0).abs() > 0.0 {
-        adjustment["focal_length_factor"] = a.adjusted.zoom.into();
+    if let Some(c) = &a.adjusted.camera {
+        let degrees = |v: &[f64; 7]| [v[1], v[2], v[3]].map(f64::to_degrees);
+        let place = |v: &[f64; 7]| [v[4], v[5], v[6]];
+        adjustment["focal_length_factor"] = (1.0 + c.moved[0]).into();
+        adjustment["camera"] = json!({
+            "focal_length_relative": c.moved[0], "focal_length_standard_error": c.errors[0],
+            "turn_deg": degrees(&c.moved), "turn_standard_errors_deg": degrees(&c.errors),
+            "shift_m": place(&c.moved), "shift_standard_errors_m": place(&c.errors),
+            "numbers_told": c.told, "correlations": c.correlations,
+        });
     }
     if let Some(angle) = from_shading(a.seen, |l| Some(a.direction(l))) {
         adjustment["angle_to_shading_mean_deg"] = angle.into();
@@ -183,13 +191,16 @@ pub fn object(a: &Answer<'_>) -> Value {
     if let Some(e) = a.entanglement {
         let of = |v: [f64; 3]| json!({"offset": v[0], "gamma": v[1], "roughness_rad": v[2]});
         let [bg, bs, gs] = e.correlations;
-        out.insert(
-            "shading_model".to_owned(),
-            json!({
-                "values": of(e.values), "standard_errors": of(e.errors), "rms_codes": e.rms,
-                "correlations": {"offset_gamma": bg, "offset_roughness": bs, "gamma_roughness": gs},
-            }),
-        );
+        let mut model = json!({
+            "told_apart": e.is_told_apart(), "rms_codes": e.rms,
+            "correlations": {"offset_gamma": bg, "offset_roughness": bs, "gamma_roughness": gs},
+        });
+        // Numbers that can stand for one another are none.
+        if e.is_told_apart() {
+            model["values"] = of(e.values);
+            model["standard_errors"] = of(e.errors);
+        }
+        out.insert("shading_model".to_owned(), model);
     }
     Value::Object(out)
 }
@@ -205,6 +216,10 @@ fn evidence(a: &Answer<'_>, n: usize, s: &Seen) -> Value {
             out["pixel"] = json!([h.pixel.x, h.pixel.y]);
             out["pixels"] = h.pixels.into();
             out["other_highlights"] = h.others.into();
+            out["spots_beyond_the_edge"] = h.crossing.into();
+            if let Some(lamp) = h.lamp {
+                out["lamp_px"] = json!([lamp.x, lamp.y]);
+            }
         }
         What::Shading(shaded) => {
             out["kind"] = "shading".into();
@@ -291,15 +306,34 @@ pub fn text(a: &Answer<'_>) -> String {
     }
     if let Some(e) = a.entanglement {
         let value = |i: usize| format!("{} ± {}", significant(e.values[i], 3), significant(e.errors[i], 2));
+        let what = if e.is_told_apart() {
+            format!("offset {} codes, gamma {}, roughness {} rad", value(0), value(1), value(2))
+        } else {
+            "offset, gamma and roughness are not told apart".to_owned()
+        };
         let _ = writeln!(
             out,
-            "surface and response of the diffuse ball: offset {} codes, gamma {}, roughness {} rad; correlations {:.2}, {:.2}, {:.2}",
-            value(0),
-            value(1),
-            value(2),
-            e.correlations[0],
-            e.correlations[1],
-            e.correlations[2]
+            "surface and response of the diffuse ball: {what}; correlations {:.2} of offset and gamma, {:.2} of offset and roughness, \
+             {:.2} of gamma and roughness",
+            e.correlations[0], e.correlations[1], e.correlations[2]
+        );
+    }
+    if let Some(c) = &a.adjusted.camera {
+        let value = |k: usize, unit: f64| {
+            format!("{} ± {}", significant(unit * c.moved[k], 3), significant(unit * c.errors[k], 2))
+        };
+        let deg = 1.0_f64.to_degrees();
+        let _ = writeln!(
+            out,
+            "camera against its statement: focal length {} %; turned by {}, {}, {} deg; shifted by {}, {}, {} m; {} of these 7 are told",
+            value(0, 100.0),
+            value(1, deg),
+            value(2, deg),
+            value(3, deg),
+            value(4, 1.0),
+            value(5, 1.0),
+            value(6, 1.0),
+            c.told
         );
     }
     if let Some(disagreement) = a.adjusted.disagreement {

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::brdf_fit;
 use super::capture_brdf::{Answer, Scale, total};
 use super::envelope::Input;
-use super::html::{Block, Figure, Page, Section};
+use super::html::{Block, Figure, Page, Section, Table};
 use crate::brdf::audit::Audit;
 use crate::brdf::fit::{Fit, Uncertainty};
 use crate::capture::brdf::{Next, Reciprocity};
@@ -121,8 +121,7 @@ pub fn page(p: &Parts<'_>) -> Page {
         best.map_or_else(String::new, |f| format!(" Of the models fitted, {} describes them best.", f.template));
     let lead = format!(
         "{} measurements of the BRDF of a {} from {lights} photograph(s). {scale}{model}",
-        a.all.len(),
-        a.object
+        a.measurements, a.object
     );
     let mut sections = vec![summary(p)];
     sections.extend([coverage(p), fits(p), maps(p), physics(p), next(p), set_up(p), inputs(p)].into_iter().flatten());
@@ -141,24 +140,20 @@ fn summary(p: &Parts<'_>) -> Section {
 
 fn coverage(p: &Parts<'_>) -> Option<Section> {
     let (a, r) = (p.answer, p.answer.binned.resolution);
-    let rows = a.seen.iter().map(|s| (s.name.clone(), s.counts.named().map(|(_, n)| n)));
-    let all = ("all".to_owned(), std::array::from_fn(|i| total(a.seen)[i].1));
-    let row = |(name, n): (String, [usize; 9])| {
-        [vec![name], n.map(|n| n.to_string()).to_vec()].concat().try_into().unwrap_or_default()
+    // What no pixel is masked for is left out.
+    let all = total(a.seen);
+    let shown: Vec<usize> = (0..all.len()).filter(|n| *n == 0 || all[*n].1 > 0).collect();
+    let head = shown.iter().map(|n| all[*n].0.replace('_', if all[*n].0 == "inter_reflection" { "-" } else { " " }));
+    let row = |name: &str, counts: &[(&str, usize)]| {
+        std::iter::once(name.to_owned()).chain(shown.iter().map(|n| counts[*n].1.to_string())).collect()
     };
-    let rows: Vec<[String; 10]> = rows.chain([all]).map(row).collect();
-    let head = [
-        "stack",
-        "valid",
-        "outside",
-        "masked",
-        "silhouette",
-        "attached shadow",
-        "cast shadow",
-        "inter-reflection",
-        "saturated",
-        "dark",
-    ];
+    let mut rows: Vec<Vec<String>> = a.seen.iter().map(|s| row(&s.name, &s.counts.named())).collect();
+    rows.push(row("all", &all));
+    let pixels = Table {
+        caption: "What became of the pixels".to_owned(),
+        head: std::iter::once("stack".to_owned()).chain(head).collect(),
+        rows,
+    };
     let words = format!(
         "{} of {} bins above the horizon are measured ({}), of {} × {} × {} in θh, θd, φd. Of the 3° bins that this camera can \
          see under any light, {} are covered. Where the map is dark or empty, nothing is known but what a model supposes.",
@@ -179,8 +174,9 @@ fn coverage(p: &Parts<'_>) -> Option<Section> {
             filling.by
         ));
     }
-    let section = section.figures(p.pictures.coverage.clone());
-    Some(section.table("What became of the pixels", head, rows))
+    let mut section = section.figures(p.pictures.coverage.clone());
+    section.blocks.push(Block::Table(pixels));
+    Some(section)
 }
 
 fn fits(p: &Parts<'_>) -> Option<Section> {

@@ -60,6 +60,8 @@ pub struct Figure {
     pub alt: String,
     /// Below the picture.
     pub caption: String,
+    /// Of a drawing: its letters can still be read where it is as narrow as the window of a phone. It need not scroll then.
+    pub large_letters: bool,
 }
 
 impl Section {
@@ -191,7 +193,7 @@ impl Block {
                 let all = if figures.iter().any(is_drawing) { " drawings" } else { "" };
                 let _ = writeln!(out, "<div class=\"figures{all}\">");
                 for f in figures {
-                    let class = if is_drawing(f) { " class=\"drawing\"" } else { "" };
+                    let class = if is_drawing(f) && !f.large_letters { " class=\"drawing\"" } else { "" };
                     let (uri, alt, caption) = (escaped(&f.uri), escaped(&f.alt), escaped(&f.caption));
                     let _ = writeln!(
                         out,

@@ -44,7 +44,7 @@ fn the_chrome_ball_gives_opencvs_lights_and_tells_the_copied_list_from_them() {
     let ball = view.ball(&chrome, None).expect("a ball");
     let direction = |k: usize| {
         let name = format!("chrome/chrome.{k}.png");
-        let found = highlight::find(&name, &photo(&folder.join(&name)), &chrome).expect("a lamp");
+        let found = highlight::find(&name, &photo(&folder.join(&name)), &chrome, &view, &ball).expect("a lamp");
         assert_eq!(found.others, 0, "{name}");
         ball.reflected(view.ray(found.pixel).expect("a ray")).expect("in the ball").towards
     };
@@ -102,10 +102,13 @@ fn the_synthetic_mirror_ball_points_at_its_lamps() {
     let Some(folder) = shared("capture/synthetic_sphere") else { return };
     // Its silhouette: seen from 8 radii away, asin(1/8) about the middle.
     let outline = Outline::stated([255.5, 255.5, 1712.9359970092567 * 0.125_f64.asin().tan()]);
-    // The first lamp stands in the picture itself, before the ball, larger than its image.
-    for (k, lamp) in lamps.iter().enumerate().skip(1) {
+    for (k, lamp) in lamps.iter().enumerate() {
         let name = format!("mirror_L{k:02}.exr");
-        let found = highlight::find(&name, &photo(&folder.join(&name)), &outline).expect("a lamp");
+        let found = highlight::find(&name, &photo(&folder.join(&name)), &outline, &view, &ball).expect("a lamp");
+        // The first lamp stands in the picture itself, before the ball, larger than its image: a disc of 0.06 m, of which a part is seen.
+        let disc_px = 0.06 * 1_712.935_997 / (8.0 - lamp.z);
+        let itself = found.lamp.map(|seen| seen.distance(view.pixel(*lamp)));
+        assert!(if k == 0 { itself.is_some_and(|d| d < disc_px) } else { itself.is_none() }, "{name}: {found:?}");
         let ray = ball.reflected(view.ray(found.pixel).expect("a ray")).expect("in the ball");
         let off = angle_deg(*lamp - ray.origin, ray.towards);
         // The lamps have a size: their images are blobs of pixels, cut by the circle's grid. A pixel is what they may be off.
@@ -186,6 +189,54 @@ fn two_balls_tell_where_near_lamps_are_and_what_disagrees() {
     observations[3].light = 1;
     let wrong = adjust(view, &starts, &places, &observations).expect("adjusted");
     assert!(wrong.disagreement.is_some_and(|d| d > 10.0), "{wrong:?}");
+}
+
+#[test]
+fn balls_in_stated_places_tell_where_the_camera_stood() {
+    let text = "[camera]\nfx = 1500\nfy = 1500\ncx = 400\ncy = 300\n";
+    let stated = View::new(Manifest::parse(text).expect("a manifest").camera.as_ref()).expect("a view");
+    // It was turned by 0.3° and more, and stood 4 mm aside and 6 mm behind; its focal length was 0.4 % shorter.
+    let (turn, shift) = (DVec3::new(0.003, -0.005, 0.004), DVec3::new(0.004, -0.002, -0.006));
+    let view = stated.moved(0.996, turn, shift);
+    let balls = [
+        Ball { centre: DVec3::new(-0.3, 0.1, 1.2), radius: 0.08 },
+        Ball { centre: DVec3::new(0.3, -0.15, 1.6), radius: 0.1 },
+        Ball { centre: DVec3::new(0.05, 0.25, 2.0), radius: 0.1 },
+        Ball { centre: DVec3::new(-0.1, -0.3, 1.8), radius: 0.1 },
+    ];
+    // Edges are found to a fifth of a pixel or so, here in a fixed pattern.
+    let seen = |b: &Ball| {
+        let points = view.outline(b).expect("in sight").points;
+        let off = |k: usize| 0.2 * DVec2::new((2.1 * k as f64).sin(), (1.7 * k as f64).cos());
+        Outline::through(points.iter().enumerate().map(|(k, p)| *p + off(k)).collect()).expect("a circle")
+    };
+    let lamp = DVec3::new(0.8, -1.0, 0.4);
+    let solve = |count: usize| {
+        let start = |b: &Ball| Start { ball: *b, outline: Some(seen(b)), stated: true };
+        let starts: Vec<Start> = balls[..count].iter().map(start).collect();
+        let observe =
+            |ball| Observation { light: 0, ball, evidence: Evidence::Highlight(image_of(&view, &balls[ball], lamp)) };
+        let observations: Vec<Observation> = (0..count).map(observe).collect();
+        let away = (lamp - balls[0].centre).to_array();
+        let place = if count > 1 { Place::Near(lamp.to_array()) } else { Place::Distant(away) };
+        adjust(stated, &starts, &[place], &observations).expect("adjusted")
+    };
+    let found = solve(4);
+    let camera = found.camera.expect("stated balls");
+    assert!(found.converged && camera.told == 7, "{camera:?}");
+    let truth = [-0.004, turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
+    for (k, (moved, truth)) in camera.moved.iter().zip(truth).enumerate() {
+        assert!((moved - truth).abs() < 3.0 * camera.errors[k], "{k}: {moved} ± {} for {truth}", camera.errors[k]);
+        assert!(camera.errors[k] < 0.5 * camera.stated[k], "{k}: {} of {}", camera.errors[k], camera.stated[k]);
+    }
+    let Place::Near(p) = found.lights[0] else { panic!("a near lamp") };
+    let off = angle_deg(DVec3::from_array(p) - balls[0].centre, lamp - balls[0].centre);
+    assert!(off < 3.0 * found.errors_deg[0].max(1e-3), "{off} ± {}", found.errors_deg[0]);
+    // One ball has three numbers to tell: where its image is, and how large. A turn and a step aside look alike.
+    let one = solve(1).camera.expect("a stated ball");
+    assert_eq!(one.told, 3, "{one:?}");
+    let alike = one.correlations[1][5].abs().min(one.correlations[2][4].abs());
+    assert!(alike > 0.9, "{one:?}");
 }
 
 #[test]

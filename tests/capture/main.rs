@@ -8,6 +8,7 @@ mod camera;
 mod cli;
 mod lights;
 mod photographs;
+mod rendered;
 mod response;
 mod shapes;
 mod spectral;

@@ -199,6 +199,16 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Takes the larger of both standard errors of an estimate for the one under equal variances: where weights are not the reciprocals of the
+    /// variances, or the model is not quite the samples', it is the robust one that holds; of few samples it is itself uncertain.
+    pub fn widen_errors(&mut self) {
+        for estimate in &mut self.estimates {
+            if let Uncertainty::Known { standard, robust } = &mut estimate.uncertainty {
+                *standard = standard.max(*robust);
+            }
+        }
+    }
+
     /// `ggx.alpha`, or with the number of the model in the sum where two are alike: `2.ggx.alpha`.
     #[must_use]
     pub fn name_of(&self, estimate: &Estimate) -> String {

@@ -11,9 +11,9 @@ use crate::brdf::table::{self, HalfAngle, Resolution};
 use super::Observations;
 
 /// Robust standard deviations beyond which a measurement does not take part.
-const FAR: f64 = 4.0;
+pub(super) const FAR: f64 = 4.0;
 /// Standard deviation of a normal distribution over the median of its absolute deviations.
-const MAD: f64 = 1.4826;
+pub(super) const MAD: f64 = 1.4826;
 
 /// A bin with measurements.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +44,23 @@ pub struct Binned {
 }
 
 impl Binned {
+    /// Of bins by rising numbers.
+    pub(super) fn new(resolution: Resolution, bins: Vec<Bin>) -> Self {
+        let above = |bin: usize| {
+            let (i, o) = resolution.centre(bin).directions();
+            i.z > 0.0 && o.z > 0.0
+        };
+        let above_horizon = (0..resolution.bins()).filter(|b| above(*b)).count();
+        let covered = bins.iter().filter(|b| above(b.bin)).count();
+        Self { resolution, bins, above_horizon, covered }
+    }
+
+    /// Multiplies values and standard errors.
+    pub fn scale(&mut self, factor: f64) {
+        let all = self.bins.iter_mut().flat_map(|b| b.values.iter_mut().chain(&mut b.errors));
+        all.for_each(|v| *v *= factor);
+    }
+
     /// Part of the bins above the horizon that was measured, 0 to 1.
     #[must_use]
     pub fn coverage_fraction(&self) -> f64 {
@@ -77,10 +94,6 @@ pub fn bin(of: &Observations, resolution: Resolution) -> Binned {
     };
     let mut order: Vec<(usize, usize)> = (0..of.len()).map(place).collect();
     order.sort_unstable();
-    let above = |bin: usize| {
-        let (i, o) = resolution.centre(bin).directions();
-        i.z > 0.0 && o.z > 0.0
-    };
     let mut bins = Vec::new();
     let (mut values, mut errors) = (Vec::new(), Vec::new());
     for group in order.chunk_by(|a, b| a.0 == b.0) {
@@ -97,9 +110,7 @@ pub fn bin(of: &Observations, resolution: Resolution) -> Binned {
         }
         bins.push(out);
     }
-    let above_horizon = (0..resolution.bins()).filter(|b| above(*b)).count();
-    let covered = bins.iter().filter(|b| above(b.bin)).count();
-    Binned { resolution, bins, above_horizon, covered }
+    Binned::new(resolution, bins)
 }
 
 /// Mean of the values near their median, its standard error, and how many took no part.

@@ -13,7 +13,7 @@
 //! 1/24 of the Laplacian of the picture.
 //!
 //! - [`Scene::observe`]: the measurements of one picture, and how many pixels were masked for which reason.
-//! - [`Observations`]: those of all pictures; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere;
+//! - [`Observations`]: those of all pictures; [`Gathered`]: the same in bounded memory; [`bin`]: per bin in half and difference angles; [`strength_from`]: a light from a diffuse sphere;
 //!   [`Filled`]: bins that nobody measured, on request.
 //! - [`Scene::maps`]: a picture beside what a model says; [`deviations`]: pictures that disagree with the others; [`reciprocity`]: of the measurements themselves; [`next_lights`]: what to photograph
 //!   next.
@@ -22,7 +22,9 @@
 
 mod agreement;
 mod bins;
+mod digest;
 mod fill;
+mod gather;
 mod maps;
 mod next;
 mod observe;
@@ -33,7 +35,8 @@ mod surface;
 pub use agreement::{apart, deviations};
 pub use bins::{Bin, Binned, bin};
 pub use fill::Filled;
-pub use maps::Maps;
+pub use gather::Gathered;
+pub use maps::{Growing, Maps};
 pub use next::{Next, next_lights};
 pub use observe::{Counts, Limits, Scene, Seen, View};
 pub use reciprocity::{Reciprocity, reciprocity};
@@ -100,6 +103,27 @@ impl Observations {
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.errors.iter().all(|e| *e > 0.0)
+    }
+
+    /// Keeps the first, third, fifth, … of them.
+    fn halve(&mut self) {
+        fn every_second<T: Copy>(all: &mut Vec<T>, together: usize) {
+            let kept = all.len().div_ceil(together).div_ceil(2);
+            (1..kept).for_each(|n| all.copy_within(2 * n * together..(2 * n + 1) * together, n * together));
+            all.truncate(kept * together);
+        }
+        let bands = self.channels.len();
+        every_second(&mut self.directions, 1);
+        [&mut self.values, &mut self.errors].into_iter().for_each(|all| every_second(all, bands));
+        every_second(&mut self.corrections, bands);
+    }
+
+    /// Removes all of them.
+    fn clear(&mut self) {
+        self.directions.clear();
+        self.values.clear();
+        self.errors.clear();
+        self.corrections.clear();
     }
 
     /// Multiplies all values and errors.

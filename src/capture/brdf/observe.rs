@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use super::surface::{Cylinder, Hit, Plane, Sphere, Surface};
 use crate::capture::camera::Camera;
+use crate::capture::lamp::Pattern;
 use crate::capture::merge::State;
-use crate::capture::radiance::Radiance;
+use crate::capture::radiance::{Radiance, Strip};
 use crate::capture::setup::{self, Place};
 use crate::capture::{Error, Manifest};
 use crate::geometry::direction::tangents;
@@ -50,7 +51,9 @@ pub struct Scene {
     axes: DMat3,
     surface: Arc<dyn Surface>,
     /// Columns and rows of the pictures, and by pixel whether the point sees too much of the object itself; of surfaces that are not convex.
-    crowded: OnceLock<(usize, usize, Vec<bool>)>,
+    crowded: Arc<OnceLock<(usize, usize, Vec<bool>)>>,
+    /// Of the light, where it is near and does not shine alike to all sides.
+    pattern: Option<Arc<Pattern>>,
     radiance: setup::Radiance,
     /// Of the places that a sample is a mean over, px².
     pixel_variance: f64,
@@ -86,7 +89,7 @@ pub struct View {
     pub incident: DVec3,
     /// ω_o.
     pub outgoing: DVec3,
-    /// cosθ_i/d², d = 1 for a distant light: irradiance over the strength of the light; 0 in the cast shadow.
+    /// cosθ_i/d², times the lamp's pattern, d = 1 for a distant light: irradiance over the strength of the light; 0 in the cast shadow.
     pub irradiance: f64,
 }
 
@@ -114,6 +117,19 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Adds those of other rows.
+    pub fn add(&mut self, other: &Self) {
+        self.valid += other.valid;
+        self.outside += other.outside;
+        self.masked += other.masked;
+        self.silhouette += other.silhouette;
+        self.attached_shadow += other.attached_shadow;
+        self.cast_shadow += other.cast_shadow;
+        self.inter_reflection += other.inter_reflection;
+        self.saturated += other.saturated;
+        self.dark += other.dark;
+    }
+
     /// Names and numbers, valid ones first.
     #[must_use]
     pub fn named(&self) -> [(&'static str, usize); 9] {
@@ -195,13 +211,20 @@ impl Scene {
             position,
             axes,
             surface,
-            crowded: OnceLock::new(),
+            crowded: Arc::default(),
+            pattern: None,
             radiance: manifest.radiance,
             pixel_variance: camera.pixel_variance(),
             pixel_variance_sd: if camera.places_per_side.is_some() { 0.0 } else { PIXEL_SD },
             placement_px: 0.0,
             limits,
         })
+    }
+
+    /// The same under a near light that shines as `pattern` says, relative to its strength; `None`: alike to all sides.
+    #[must_use]
+    pub fn lit_by(&self, pattern: Option<Arc<Pattern>>) -> Self {
+        Self { pattern, ..self.clone() }
     }
 
     /// What the object is: `sphere`.
@@ -240,7 +263,10 @@ impl Scene {
         let (incident, distance2) = light(place, hit);
         let (t, b) = tangents(hit.normal);
         let local = |d: DVec3| DVec3::new(t.dot(d), b.dot(d), hit.normal.dot(d));
-        let irradiance = hit.normal.dot(incident) / distance2;
+        let mut irradiance = hit.normal.dot(incident) / distance2;
+        if let (Some(pattern), Place::Near(_)) = (&self.pattern, place) {
+            irradiance *= pattern.towards(hit.point);
+        }
         View { incident: local(incident), outgoing: local(outgoing), irradiance }
     }
 
@@ -324,14 +350,10 @@ impl Scene {
         to_camera * angle_rad.cos() + aside * angle_rad.sin()
     }
 
-    /// Visits the measurements of a picture, `mask` (a value per pixel, where given) being true where the object is.
-    ///
-    /// `strength` is the light's: radiant intensity of a near light, irradiance of a facing surface of a distant one, per band, so that the
-    /// unit of the picture over that of the strength is 1/sr (times m² for a near light).
+    /// Visits the measurements of a picture: [`Scene::observe_rows`] of all of it.
     ///
     /// # Errors
-    /// [`Error::Setup`] for a mask of another size, another number of strengths than bands, a near light inside of the object, or
-    /// pictures of several sizes of an object that is not convex.
+    /// As there.
     pub fn observe(
         &self,
         picture: &Radiance,
@@ -340,6 +362,27 @@ impl Scene {
         mask: Option<&[bool]>,
         visit: &mut dyn FnMut(&Seen<'_>),
     ) -> Result<Counts, Error> {
+        self.observe_rows(&Strip::whole(picture), place, strength, mask, visit)
+    }
+
+    /// Visits the measurements of rows of a picture, `mask` (a value per pixel of the whole picture, where given) being true where the object is.
+    ///
+    /// `strength` is the light's: radiant intensity of a near light, irradiance of a facing surface of a distant one, per band, so that the
+    /// unit of the picture over that of the strength is 1/sr (times m² for a near light).
+    ///
+    /// # Errors
+    /// [`Error::Setup`] for a mask of another size, another number of strengths than bands, a near light inside of the object, or
+    /// pictures of several sizes of an object that is not convex.
+    pub fn observe_rows(
+        &self,
+        strip: &Strip<'_>,
+        place: Place,
+        strength: &[f64],
+        mask: Option<&[bool]>,
+        visit: &mut dyn FnMut(&Seen<'_>),
+    ) -> Result<Counts, Error> {
+        let picture = strip.picture;
+        let (width, height) = (picture.width, strip.height);
         let bands = picture.channels;
         if strength.len() != bands {
             return Err(Error::Setup {
@@ -347,9 +390,9 @@ impl Scene {
                 expected: "one number, or as many as the picture has bands",
             });
         }
-        if mask.is_some_and(|m| m.len() != picture.width * picture.height) {
+        if mask.is_some_and(|m| m.len() != width * height) {
             return Err(Error::Setup {
-                found: format!("a mask of another size than {}", picture.size()),
+                found: format!("a mask of another size than {width} × {height} pixels"),
                 expected: "a mask of the size of the pictures",
             });
         }
@@ -365,21 +408,22 @@ impl Scene {
             (self.limits.max_theta_i_deg.to_radians().cos(), self.limits.max_theta_o_deg.to_radians().cos());
         let [mut values, mut errors, mut corrections] = [(); 3].map(|()| vec![0.0; bands]);
         let mut counts = Counts::default();
-        let mut rows = Rows { scene: self, place, width: picture.width, height: picture.height, kept: Vec::new() };
-        let crowded = self.crowded(picture.width, picture.height);
+        let mut rows = Rows { scene: self, place, width, height, kept: Vec::new() };
+        let crowded = self.crowded(width, height);
         if crowded.is_none() && !self.surface.is_convex() {
             return Err(Error::Setup {
-                found: format!("a picture of another size: {}", picture.size()),
+                found: format!("a picture of another size: {width} × {height} pixels"),
                 expected: "pictures of one size",
             });
         }
-        for y in (0..picture.height).step_by(self.limits.every.max(1)) {
-            for x in (0..picture.width).step_by(self.limits.every.max(1)) {
+        let every = self.limits.every.max(1);
+        for y in strip.rows.clone().filter(|y| y.is_multiple_of(every)) {
+            for x in (0..width).step_by(every) {
                 let Some(spot) = rows.spot(x, y) else {
                     counts.outside += 1;
                     continue;
                 };
-                let at = y * picture.width + x;
+                let at = y * width + x;
                 if mask.is_some_and(|m| !m[at]) {
                     counts.masked += 1;
                     continue;
@@ -389,7 +433,7 @@ impl Scene {
                     counts.silhouette += 1;
                     continue;
                 }
-                if view.incident.z < least_i {
+                if view.incident.z < least_i || view.irradiance <= 0.0 {
                     counts.attached_shadow += 1;
                     continue;
                 }
@@ -401,7 +445,8 @@ impl Scene {
                     counts.inter_reflection += 1;
                     continue;
                 }
-                let samples = at * bands..(at + 1) * bands;
+                let here = strip.at(x, y);
+                let samples = here * bands..(here + 1) * bands;
                 match self.state(picture, samples.clone()) {
                     State::Valid => {}
                     State::Saturated => {
@@ -413,7 +458,7 @@ impl Scene {
                         continue;
                     }
                 }
-                let neighbours = self.neighbours(picture, &mut rows, (x, y));
+                let neighbours = self.neighbours(strip, &mut rows, (x, y));
                 for (band, i) in samples.enumerate() {
                     // Samples are radiance times exposure time.
                     let exposure = strength[band] * view.irradiance * picture.time_s;
@@ -438,19 +483,20 @@ impl Scene {
     }
 
     /// The four pixels beside one, where averages are corrected and all four are of use: lit, on the same part of the object, within the range.
-    fn neighbours(&self, picture: &Radiance, rows: &mut Rows<'_>, (x, y): (usize, usize)) -> Option<[usize; 4]> {
+    fn neighbours(&self, strip: &Strip<'_>, rows: &mut Rows<'_>, (x, y): (usize, usize)) -> Option<[usize; 4]> {
+        let picture = strip.picture;
         if self.pixel_variance.max(self.placement_px) <= 0.0 && self.radiance.relative_error.is_none()
             || x == 0
             || y == 0
             || x + 1 >= picture.width
-            || y + 1 >= picture.height
+            || y + 1 >= strip.height
         {
             return None;
         }
         let bands = picture.channels;
         let mut of_use = |x: usize, y: usize| {
             let spot = rows.spot(x, y)?;
-            let at = y * picture.width + x;
+            let at = strip.at(x, y);
             let lit = !spot.edge && !spot.shadow && light(rows.place, &spot.hit).0.dot(spot.hit.normal) > 0.0;
             (lit && self.state(picture, at * bands..(at + 1) * bands) == State::Valid).then_some(at)
         };

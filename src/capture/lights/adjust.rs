@@ -6,13 +6,17 @@
 //! | a stated centre | its offset, in thousandths of the radius |
 //! | a highlight | the angle between the reflected ray and the light, in turns of the ray per pixel |
 //! | shading | the angle between its direction and the light, in its spread |
-//! | the stated focal length | its relative change, in hundredths; only where a stated ball has an outline too |
+//! | the stated camera | the relative change of its focal length in hundredths, its turn in hundredths of a radian, its shift in hundredths of the distance to the first ball; only where a stated ball has an outline too |
+//!
+//! The camera's seven numbers are adjusted where a ball whose place is stated has an outline: without one they are a matter of the frame. One
+//! such ball tells three combinations of them, two at most six, more of them all seven; what they do not tell stays as stated, with
+//! that uncertainty in the lights, and [`CameraFound`] says how many they tell and which two cannot be told apart.
 //!
 //! With one mirror ball every light is told by two numbers and nothing can disagree; a second ball, shading or a stated centre makes the sum
 //! mean something.
 
 use glam::{DVec2, DVec3};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::angle_deg;
 use super::outline::Outline;
@@ -28,6 +32,14 @@ const ROUNDING_PX: f64 = 0.288_675_134_594_812_9;
 const STATED: f64 = 1e-3;
 /// Of a stated focal length, relative.
 const FOCAL: f64 = 0.01;
+/// Of a stated orientation of the camera, rad.
+const TURN: f64 = 0.01;
+/// Of a stated place of the camera, parts of its distance to the first ball.
+const SHIFT: f64 = 0.01;
+/// Numbers of the camera: focal length, three turns, three of its place.
+const CAMERA: usize = 7;
+/// Of an uncertainty as stated, the part that is left of a number that the balls tell.
+const TOLD: f64 = 0.5;
 /// Points of an outline that are used at most.
 const POINTS: usize = 90;
 
@@ -71,8 +83,8 @@ pub struct Adjusted {
     pub lights: Vec<Place>,
     /// Their standard errors seen from the first ball, degrees, for the stated errors of the observations.
     pub errors_deg: Vec<f64>,
-    /// Focal lengths over those stated.
-    pub zoom: f64,
+    /// The camera, where a stated ball tells of it.
+    pub camera: Option<CameraFound>,
     /// Disagreement of each observation with the whole, degrees.
     pub off_deg: Vec<f64>,
     /// The same over its standard error.
@@ -83,12 +95,28 @@ pub struct Adjusted {
     pub converged: bool,
 }
 
+/// A camera against how it is stated. Its seven numbers: relative change of the focal lengths; turn about its axes to the right, downwards and
+/// forward, rad; shift along these, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraFound {
+    /// What changed.
+    pub moved: [f64; CAMERA],
+    /// Standard errors of that.
+    pub errors: [f64; CAMERA],
+    /// What they were taken as before: those of the statement.
+    pub stated: [f64; CAMERA],
+    /// How many combinations of the seven the balls tell to better than half of that.
+    pub told: usize,
+    /// Correlations of the seven.
+    pub correlations: [[f64; CAMERA]; CAMERA],
+}
+
 struct Network<'a> {
     view: View,
     starts: &'a [Start],
     places: &'a [Place],
     observations: &'a [Observation],
-    zooms: bool,
+    moves: bool,
 }
 
 /// Adjusts all that is told.
@@ -96,8 +124,8 @@ struct Network<'a> {
 /// # Errors
 /// [`Error::Singular`] where an observation has no meaning, such as a highlight beside its ball.
 pub fn adjust(view: View, starts: &[Start], places: &[Place], observations: &[Observation]) -> Result<Adjusted, Error> {
-    let zooms = view.camera.is_some() && starts.iter().any(|s| s.stated && s.outline.is_some());
-    let network = Network { view, starts, places, observations, zooms };
+    let moves = view.camera.is_some() && starts.iter().any(|s| s.stated && s.outline.is_some());
+    let network = Network { view, starts, places, observations, moves };
     let start = vec![0.0; network.unknowns()];
     let limits = Limits { iterations: 100, step: 1e-9, gain: 1e-12 };
     let (low, high) = (vec![f64::NEG_INFINITY; start.len()], vec![f64::INFINITY; start.len()]);
@@ -120,7 +148,7 @@ pub fn adjust(view: View, starts: &[Start], places: &[Place], observations: &[Ob
     let square: f64 = told.iter().map(|r| r * r).sum();
     let errors_deg = (0..places.len()).map(|k| network.error_deg(&found.x, &inverse, k)).collect();
     Ok(Adjusted {
-        zoom: network.zoom(&found.x),
+        camera: network.camera(&found.x, &inverse),
         balls,
         lights,
         errors_deg,
@@ -138,17 +166,45 @@ impl Network<'_> {
     }
 
     fn unknowns(&self) -> usize {
-        3 * self.starts.len() + usize::from(self.zooms) + self.places.iter().map(|p| self.numbers(p)).sum::<usize>()
+        self.first(self.places.len())
     }
 
-    fn zoom(&self, x: &[f64]) -> f64 {
-        if self.zooms { x[3 * self.starts.len()].exp() } else { 1.0 }
+    /// Numbers of the camera at `x`: ln of the focal lengths over those stated, turn, shift over the distance to the first ball.
+    fn of_camera(&self, x: &[f64]) -> [f64; CAMERA] {
+        let first = 3 * self.starts.len();
+        if self.moves { std::array::from_fn(|k| x[first + k]) } else { [0.0; CAMERA] }
+    }
+
+    /// Length of a shift of 1, m.
+    fn reach(&self) -> f64 {
+        self.view.distance(self.starts[0].ball.centre)
+    }
+
+    /// What became of the camera.
+    fn camera(&self, x: &[f64], inverse: &DMatrix<f64>) -> Option<CameraFound> {
+        if !self.moves {
+            return None;
+        }
+        let first = 3 * self.starts.len();
+        let covariance = inverse.view((first, first), (CAMERA, CAMERA));
+        let unit = |k: usize| if k < 4 { 1.0 } else { self.reach() };
+        let x = self.of_camera(x);
+        let correlation = |i: usize, j: usize| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+        let over_stated = DMatrix::from_fn(CAMERA, CAMERA, |i, j| covariance[(i, j)] / (PRIOR[i] * PRIOR[j]));
+        let left = SymmetricEigen::new(over_stated).eigenvalues;
+        Some(CameraFound {
+            moved: std::array::from_fn(|k| if k == 0 { x[0].exp_m1() } else { x[k] * unit(k) }),
+            errors: std::array::from_fn(|k| covariance[(k, k)].sqrt() * unit(k)),
+            stated: std::array::from_fn(|k| PRIOR[k] * unit(k)),
+            told: left.iter().filter(|v| **v < TOLD * TOLD).count(),
+            correlations: std::array::from_fn(|i| std::array::from_fn(|j| correlation(i, j))),
+        })
     }
 
     /// Where the numbers of a light begin.
     fn first(&self, light: usize) -> usize {
         let before: usize = self.places[..light].iter().map(|p| self.numbers(p)).sum();
-        3 * self.starts.len() + usize::from(self.zooms) + before
+        3 * self.starts.len() + if self.moves { CAMERA } else { 0 } + before
     }
 
     /// View, balls and lights at `x`, which is 0 at the start: lengths over the radius of the ball, angles in rad, distances relative.
@@ -179,7 +235,10 @@ impl Network<'_> {
                 }
             }
         };
-        (self.view.zoomed(self.zoom(x)), balls, self.places.iter().enumerate().map(light).collect())
+        let [zoom, a, b, c, right, down, forward] = self.of_camera(x);
+        let shift = self.reach() * DVec3::new(right, down, forward);
+        let view = self.view.moved(zoom.exp(), DVec3::new(a, b, c), shift);
+        (view, balls, self.places.iter().enumerate().map(light).collect())
     }
 
     /// Standard error of an observation as an angle, rad.
@@ -207,8 +266,8 @@ impl Network<'_> {
                 out.extend_from_slice(&off.to_array());
             }
         }
-        if self.zooms {
-            out.push(x[3 * self.starts.len()] / FOCAL);
+        if self.moves {
+            out.extend(self.of_camera(x).iter().zip(PRIOR).map(|(x, prior)| x / prior));
         }
         for o in self.observations {
             let ball = &balls[o.ball];
@@ -278,6 +337,9 @@ fn towards(place: &Place, from: DVec3) -> DVec3 {
         Place::Distant(d) => DVec3::from_array(*d).normalize(),
     }
 }
+
+/// What the numbers of a stated camera are off by.
+const PRIOR: [f64; CAMERA] = [FOCAL, TURN, TURN, TURN, SHIFT, SHIFT, SHIFT];
 
 /// Step of the differences: unknowns are of the order of 1e-3.
 const DIFFERENCE: f64 = 1e-6;

@@ -172,6 +172,17 @@ pub struct Entanglement {
     pub rms: f64,
 }
 
+/// Correlation from which on two numbers are not told apart.
+pub const INSEPARABLE: f64 = 0.9;
+
+impl Entanglement {
+    /// Whether all three mean something: no two of them can stand for one another.
+    #[must_use]
+    pub fn is_told_apart(&self) -> bool {
+        self.correlations.iter().all(|r| r.abs() <= INSEPARABLE)
+    }
+}
+
 /// Fits b, γ and the roughness of Oren and Nayar's surface (1994, their qualitative model) and a gain per photograph at once, the lights
 /// given. Standard errors are those of the residuals taken as independent: least values. `None` where the equations have no solution.
 #[must_use]

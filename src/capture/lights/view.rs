@@ -27,6 +27,14 @@ pub struct Ray {
     pub towards: DVec3,
 }
 
+impl Ray {
+    /// The point at a distance along it.
+    #[must_use]
+    pub fn at(&self, distance: f64) -> DVec3 {
+        self.origin + distance * self.towards
+    }
+}
+
 /// A ball, in m; of parallel rays in pixels, its middle at z = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
@@ -53,14 +61,26 @@ impl View {
         Ok(Self { camera: Some(camera.lens()?), axes, position: DVec3::from_array(camera.position_m) })
     }
 
-    /// The same with focal lengths multiplied.
+    /// The same with focal lengths multiplied, the camera turned about its own axes by a rotation vector (rad) and shifted along them (m). Parallel
+    /// rays stay as they are.
     #[must_use]
-    pub fn zoomed(mut self, factor: f64) -> Self {
+    pub fn moved(mut self, zoom: f64, turn: DVec3, shift: DVec3) -> Self {
         if let Some(camera) = &mut self.camera {
-            camera.intrinsics.fx *= factor;
-            camera.intrinsics.fy *= factor;
+            camera.intrinsics.fx *= zoom;
+            camera.intrinsics.fy *= zoom;
+            self.position += self.axes * shift;
+            let angle = turn.length();
+            if angle > 0.0 {
+                self.axes *= DMat3::from_axis_angle(turn / angle, angle);
+            }
         }
         self
+    }
+
+    /// From the camera to a point, m; of parallel rays from the plane of the picture.
+    #[must_use]
+    pub fn distance(&self, point: DVec3) -> f64 {
+        (point - self.position).length()
     }
 
     /// Right, down and forward of the picture as columns.

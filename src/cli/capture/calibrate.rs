@@ -104,20 +104,23 @@ fn search(
 
 /// Finds the board in photographs; those without are left out.
 pub(super) fn find_views(photos: &mut Photos, files: &[String], corners: [usize; 2], square: f64) -> Vec<View> {
-    let mut decoded = Vec::new();
-    for file in files {
-        match photos.photo(file) {
-            Ok(photo) => decoded.push((file, photo)),
-            Err(failure) => photos.left_out(file, &failure),
-        }
-    }
-    let found: Vec<_> =
-        decoded.par_iter().map(|(file, photo)| (file, find_corners(file, photo, corners, square))).collect();
     let mut views = Vec::new();
-    for (file, view) in found {
-        match view {
-            Ok(view) => views.push(view),
-            Err(error) => photos.left_out(file, &Failure::Message(error.to_string())),
+    // As many as are looked at together: of cameras with many megapixels all would not fit.
+    for files in files.chunks(rayon::current_num_threads()) {
+        let mut decoded = Vec::new();
+        for file in files {
+            match photos.photo(file) {
+                Ok(photo) => decoded.push((file, photo)),
+                Err(failure) => photos.left_out(file, &failure),
+            }
+        }
+        let found: Vec<_> =
+            decoded.par_iter().map(|(file, photo)| (file, find_corners(file, photo, corners, square))).collect();
+        for (file, view) in found {
+            match view {
+                Ok(view) => views.push(view),
+                Err(error) => photos.left_out(file, &Failure::Message(error.to_string())),
+            }
         }
     }
     views

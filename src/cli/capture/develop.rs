@@ -1,22 +1,23 @@
 //! From the photographs of a manifest to linear pictures: camera, noise, response, merged exposures, vignetting.
 
 use std::collections::HashMap;
+use std::fs::File;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::brdf;
 use super::calibrate::find_views;
 use super::photos::Photos;
 use super::response::{disagreements, read_table, samples};
 use crate::capture::Error;
 use crate::capture::camera::{Calibration, calibrate_lean};
 use crate::capture::flat::Vignetting;
-use crate::capture::manifest::{Exposure, Shows, Stack};
+use crate::capture::manifest::{Shows, Stack};
 use crate::capture::merge::{Merge, Range, Respond};
 use crate::capture::noise::{Noise, Residuals};
-use crate::capture::radiance::Radiance;
+use crate::capture::radiance::{Radiance, RadianceRows};
 use crate::capture::response::{Curve, Sampling, check_order, consistency, smooth};
+use crate::capture::rows::PhotoRows;
 use crate::cli::Failure;
 use crate::finding::{Finding, Location};
 
@@ -26,8 +27,10 @@ const ABOVE_NOISE: f64 = 4.0;
 const PIXELS: usize = 4096;
 /// Rms of a flat field from which on it is told that it is none.
 const UNEVEN: f64 = 0.01;
-/// Pictures are kept up to so many samples, about 1 GiB with their errors; beyond, they are merged again when they are asked for.
-const KEPT: usize = 100_000_000;
+/// Pictures are kept up to so many samples, about 270 MB with their errors; beyond, they are merged again when they are asked for.
+const KEPT: usize = 30_000_000;
+/// Samples of a picture that are made at once.
+const SAMPLES_AT_ONCE: usize = 1 << 22;
 
 /// What photographs are developed with.
 pub(super) struct Darkroom {
@@ -40,7 +43,7 @@ pub(super) struct Darkroom {
     respond: Option<Respond>,
     /// Per channel, radiance over what merging gives.
     scale: Option<Vec<f64>>,
-    kept: HashMap<String, Radiance>,
+    kept: HashMap<String, Vec<Radiance>>,
 }
 
 impl Darkroom {
@@ -86,19 +89,20 @@ impl Darkroom {
         photos.notes.stage(&format!("noise: {} stacks", stacks.len()));
         for stack in &stacks {
             // Those that cannot be read are told when they are merged; a stack is of one kind.
-            let mut decoded = Vec::new();
+            let mut opened = Vec::new();
             for exposure in &stack.exposures {
-                decoded.extend(photos.photo(&exposure.photo));
-                if decoded.last().is_some_and(crate::capture::Photo::is_linear) {
-                    decoded.clear();
+                opened.extend(photos.rows(&exposure.photo));
+                if opened.last().is_some_and(|p| p.is_linear) {
+                    opened.clear();
                     break;
                 }
             }
-            let each: Vec<Residuals> = decoded
-                .par_iter()
-                .map(|p| {
+            let each: Vec<Residuals> = opened
+                .par_iter_mut()
+                .map(|rows| {
                     let mut one = Residuals::default();
-                    one.add(p);
+                    // What is damaged is told when it is merged.
+                    let _ = one.add_rows(rows);
                     one
                 })
                 .collect();
@@ -150,7 +154,7 @@ impl Darkroom {
             return Err(Failure::Message(words.to_owned()));
         }
         photos.notes.stage("vignetting");
-        let (picture, _) = self.merged(photos, &flat)?;
+        let picture = self.merged(photos, &flat)?.whole(photos, self)?;
         let lens = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
         let centre = lens.map(|l| DVec2::new(l.intrinsics.cx, l.intrinsics.cy));
         let found = Vignetting::fit(&flat.name, &picture, centre).map_err(|e| Failure::Message(e.to_string()))?;
@@ -179,64 +183,215 @@ impl Darkroom {
         Ok(())
     }
 
-    /// The linear picture of a stack, without vignetting, and its name: the one that there is, or its exposures merged.
-    pub(super) fn picture(&mut self, photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
-        if let Some(picture) = self.kept.remove(&stack.name) {
-            return Ok((picture, stack.name.clone()));
+    /// The linear picture of a stack, without vignetting, from its top: the one that there is, or its exposures merged.
+    pub(super) fn develop(&mut self, photos: &mut Photos, stack: &Stack) -> Result<Developing, Failure> {
+        match self.kept.remove(&stack.name) {
+            Some(pieces) => Ok(Developing::kept(&stack.name, pieces)),
+            None => self.merged(photos, stack),
         }
-        let (mut picture, name) = self.merged(photos, stack)?;
+    }
+
+    /// The same as a whole.
+    pub(super) fn picture(&mut self, photos: &mut Photos, stack: &Stack) -> Result<Radiance, Failure> {
+        self.develop(photos, stack)?.whole(photos, self)
+    }
+
+    /// For how many samples of pictures there is room.
+    pub(super) fn room(&self) -> usize {
+        KEPT.saturating_sub(self.kept.values().flatten().map(|p| p.values.len()).sum())
+    }
+
+    /// Keeps the pieces of a picture for the next time that it is asked for; none where there was no room for them.
+    pub(super) fn keep(&mut self, stack: &Stack, pieces: Vec<Radiance>) {
+        if !pieces.is_empty() {
+            self.kept.insert(stack.name.clone(), pieces);
+        }
+    }
+
+    /// What merging gives, without vignetting and in its scale.
+    fn finish(&self, photos: &Photos, piece: &mut Radiance, top: usize) {
         if let Some(vignetting) = &self.vignetting {
-            vignetting.undo(&mut picture);
+            vignetting.undo(piece, top);
         }
-        if let Some(scale) = self.scale.as_ref().filter(|s| s.len() == picture.channels) {
-            picture.scale(scale);
+        if let Some(scale) = self.scale.as_ref().filter(|s| s.len() == piece.channels) {
+            piece.scale(scale);
         }
-        if picture.states.is_some() {
+        if piece.states.is_some() {
             // What merging took as valid may still be beyond the limits of the manifest.
-            picture.mark(&photos.manifest.radiance);
-        }
-        Ok((picture, name))
-    }
-
-    /// Keeps a picture for the next time that it is asked for, if there is room.
-    pub(super) fn keep(&mut self, stack: &Stack, picture: Radiance) {
-        let samples: usize = self.kept.values().map(|p| p.values.len()).sum();
-        if samples + picture.values.len() <= KEPT {
-            self.kept.insert(stack.name.clone(), picture);
+            piece.mark(&photos.manifest.radiance);
         }
     }
 
-    fn merged(&self, photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
-        let (Some(respond), Some(noise)) = (&self.respond, &self.noise) else { return brdf::picture(photos, stack) };
+    fn merged(&self, photos: &mut Photos, stack: &Stack) -> Result<Developing, Failure> {
+        let (Some(_), Some(noise)) = (&self.respond, &self.noise) else { return Developing::linear(photos, stack) };
         if let [one] = stack.exposures.as_slice()
-            && photos.photo(&one.photo).is_ok_and(|p| p.is_linear())
+            && photos.rows(&one.photo).is_ok_and(|p| p.is_linear)
         {
-            return brdf::picture(photos, stack);
+            return Developing::linear(photos, stack);
         }
         photos.notes.stage(&format!("merging {}", stack.name));
-        let mut exposures: Vec<&Exposure> = stack.exposures.iter().collect();
-        let time = |e: &Exposure| e.time_s.unwrap_or(0.0);
-        // The longest tells most of the dark, and what the others should be.
-        exposures.sort_by(|a, b| time(b).total_cmp(&time(a)));
-        let range = self.range();
-        let mut merge: Option<Merge> = None;
-        for exposure in exposures {
-            let added = photos.exposure(exposure).and_then(|(photo, time_s)| {
-                if photo.channels > noise.channels() {
-                    return Err(Failure::Message(format!("found {}; expected it like the others", photo.size())));
+        Developing::exposures(photos, stack, noise.channels())
+    }
+}
+
+/// A picture from its top: rows are asked for, and made when they are.
+pub(super) struct Developing {
+    /// What to call it.
+    pub name: String,
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// 1 or 3.
+    pub channels: usize,
+    given: usize,
+    from: From,
+}
+
+enum From {
+    /// Pieces that were made before.
+    Kept(std::vec::IntoIter<Radiance>),
+    /// A linear picture.
+    Linear(RadianceRows<File>),
+    /// Exposures, the longest first: it tells most of the dark, and what the others should be.
+    Exposures(Vec<Opened>),
+}
+
+/// An exposure that is being read.
+struct Opened {
+    photo: String,
+    time_s: f64,
+    rows: PhotoRows<File>,
+}
+
+impl Developing {
+    fn kept(name: &str, pieces: Vec<Radiance>) -> Self {
+        let (width, channels) = pieces.first().map_or((0, 1), |p| (p.width, p.channels));
+        let height = pieces.iter().map(|p| p.height).sum();
+        Self { name: name.to_owned(), width, height, channels, given: 0, from: From::Kept(pieces.into_iter()) }
+    }
+
+    fn linear(photos: &mut Photos, stack: &Stack) -> Result<Self, Failure> {
+        let [exposure] = stack.exposures.as_slice() else {
+            return Err(Failure::Message(format!(
+                "found {} exposures in {}; expected one linear picture: `photopic capture merge` makes it",
+                stack.exposures.len(),
+                stack.name
+            )));
+        };
+        let path = photos.path(&exposure.photo);
+        // A picture that says nothing of its time, such as a merged one, is radiance already.
+        let time_s = photos.time_s(exposure)?.unwrap_or(1.0);
+        let wrong = |e: Error| Failure::Message(format!("{path}: {e}"));
+        if !(time_s > 0.0 && time_s.is_finite()) {
+            return Err(wrong(Error::Time { name: exposure.photo.clone(), time_s }));
+        }
+        let rows = RadianceRows::open(photos.file(&path)?, time_s).map_err(wrong)?;
+        let (width, height, channels) = (rows.width, rows.height, rows.channels);
+        Ok(Self { name: path, width, height, channels, given: 0, from: From::Linear(rows) })
+    }
+
+    fn exposures(photos: &mut Photos, stack: &Stack, channels: usize) -> Result<Self, Failure> {
+        let mut opened: Vec<Opened> = Vec::new();
+        for exposure in &stack.exposures {
+            let photo = exposure.photo.clone();
+            let found = photos.exposure_rows(exposure).and_then(|(rows, time_s)| match time_s {
+                t if !(t > 0.0 && t.is_finite()) => {
+                    Err(Failure::Message(Error::Time { name: photo.clone(), time_s }.to_string()))
                 }
-                let sum = merge.get_or_insert_with(|| Merge::new(&photo, range, noise.clone()));
-                let respond = if photo.is_linear() { &Respond::Linear } else { respond };
-                sum.add(&exposure.photo, time_s, &photo, respond).map_err(|e| Failure::Message(e.to_string()))
+                _ if rows.channels > channels => {
+                    Err(Failure::Message(format!("found {}; expected it like the others", rows.size())))
+                }
+                _ => Ok(Opened { photo, time_s, rows }),
             });
-            if let Err(failure) = added {
-                photos.left_out(&exposure.photo, &failure);
+            match found {
+                Ok(one) => opened.push(one),
+                Err(failure) => photos.left_out(&exposure.photo, &failure),
             }
         }
-        let merge = merge.filter(|m| m.counts()[0] > 0).ok_or_else(|| {
-            let why = "no exposure of it has a sample within the range".to_owned();
-            Failure::Message(Error::Nothing { stack: stack.name.clone(), why }.to_string())
-        })?;
-        Ok((merge.radiance(), stack.name.clone()))
+        opened.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
+        let Some(first) = opened.first() else {
+            let why = "no exposure of it can be read".to_owned();
+            return Err(Failure::Message(Error::Nothing { stack: stack.name.clone(), why }.to_string()));
+        };
+        let (expected, width, height) = (first.rows.size(), first.rows.width, first.rows.height);
+        let channels = first.rows.channels;
+        for other in opened.extract_if(.., |o| o.rows.size() != expected) {
+            let error = Error::Size { name: other.photo.clone(), found: other.rows.size(), expected: expected.clone() };
+            photos.left_out(&other.photo, &Failure::Message(error.to_string()));
+        }
+        Ok(Self { name: stack.name.clone(), width, height, channels, given: 0, from: From::Exposures(opened) })
+    }
+
+    /// The next rows; `None` when there are no more, or where a file is damaged: what came before counts, and it is told.
+    pub(super) fn next(&mut self, photos: &mut Photos, room: &Darkroom) -> Result<Option<Radiance>, Failure> {
+        let (top, left) = (self.given, self.height - self.given);
+        let rows = (SAMPLES_AT_ONCE / (self.width * self.channels).max(1)).max(1).min(left);
+        if rows == 0 {
+            return Ok(None);
+        }
+        let damaged = |path: &str, error: &Error| {
+            let after = if top > 0 { format!("from row {top} on: ") } else { String::new() };
+            Failure::Message(format!("{after}{path}: {error}"))
+        };
+        let piece = match &mut self.from {
+            From::Kept(pieces) => {
+                let piece = pieces.next();
+                self.given += piece.as_ref().map_or(left, |p| p.height);
+                return Ok(piece);
+            }
+            From::Linear(picture) => match picture.next(rows) {
+                Ok(piece) => Some(piece),
+                Err(error) if top == 0 => return Err(damaged(&self.name, &error)),
+                Err(error) => {
+                    photos.left_out(&self.name, &damaged(&self.name, &error));
+                    None
+                }
+            },
+            From::Exposures(opened) => {
+                let (Some(respond), Some(noise)) = (&room.respond, &room.noise) else { return Ok(None) };
+                let mut parts = Vec::with_capacity(opened.len());
+                opened.retain_mut(|one| match one.rows.next(rows) {
+                    Ok(part) => {
+                        parts.push(part);
+                        true
+                    }
+                    Err(error) => {
+                        let path = photos.path(&one.photo);
+                        photos.left_out(&one.photo, &damaged(&path, &error));
+                        false
+                    }
+                });
+                let mut merge: Option<Merge> = None;
+                for (one, part) in opened.iter().zip(&parts) {
+                    let sum = merge.get_or_insert_with(|| Merge::new(part, room.range(), noise.clone()));
+                    let respond = if one.rows.is_linear { &Respond::Linear } else { respond };
+                    sum.add(&one.photo, one.time_s, part, respond).map_err(|e| Failure::Message(e.to_string()))?;
+                }
+                merge.map(|m| m.radiance())
+            }
+        };
+        let Some(mut piece) = piece else {
+            self.given = self.height;
+            return Ok(None);
+        };
+        self.given += piece.height;
+        room.finish(photos, &mut piece, top);
+        Ok(Some(piece))
+    }
+
+    /// All rows.
+    fn whole(mut self, photos: &mut Photos, room: &Darkroom) -> Result<Radiance, Failure> {
+        let mut out: Option<Radiance> = None;
+        while let Some(piece) = self.next(photos, room)? {
+            match &mut out {
+                None => out = Some(piece),
+                Some(all) => all.append(&piece),
+            }
+        }
+        out.ok_or_else(|| {
+            let why = "no exposure of it can be read".to_owned();
+            Failure::Message(Error::Nothing { stack: self.name, why }.to_string())
+        })
     }
 }

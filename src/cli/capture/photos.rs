@@ -1,7 +1,7 @@
 //! The photographs of a run: those of a manifest, or those named.
 
-use std::fs;
-use std::io::Write;
+use std::fs::{self, File};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,6 +10,7 @@ use sha2::{Digest, Sha256};
 
 use crate::capture::manifest::{Exposure, Manifest, Stack};
 use crate::capture::photo::exif_time_s;
+use crate::capture::rows::PhotoRows;
 use crate::capture::{Error, Photo};
 use crate::cli::notes::Notes;
 use crate::cli::output::Sink;
@@ -88,31 +89,83 @@ impl Photos {
 
     /// Reads a file and keeps its checksum.
     pub(super) fn bytes(&mut self, path: &str) -> Result<Vec<u8>, Failure> {
-        let read = fs::read(path);
-        let bytes = read.map_err(|e| Failure::Message(format!("{path}: cannot be read: {e}; expected a file")))?;
-        let sha256 = Some(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect());
-        let input = Input { path: path.to_owned(), sha256 };
-        if !self.inputs.contains(&input) {
-            self.inputs.push(input);
-        }
+        let bytes = fs::read(path).map_err(|e| unreadable(path, &e))?;
+        self.read(path, || Ok(Sha256::digest(&bytes)))?;
         Ok(bytes)
+    }
+
+    /// Opens a file and keeps its checksum.
+    pub(super) fn file(&mut self, path: &str) -> Result<File, Failure> {
+        let opened = || File::open(path).map_err(|e| unreadable(path, &e));
+        self.read(path, || {
+            let (mut file, mut hash, mut piece) = (opened()?, Sha256::new(), vec![0; 1 << 18]);
+            loop {
+                match file.read(&mut piece).map_err(|e| unreadable(path, &e))? {
+                    0 => return Ok(hash.finalize()),
+                    n => hash.update(&piece[..n]),
+                }
+            }
+        })?;
+        opened()
+    }
+
+    /// Notes an input, with its checksum where it is not known yet.
+    fn read(
+        &mut self,
+        path: &str,
+        checksum: impl FnOnce() -> Result<sha2::digest::Output<Sha256>, Failure>,
+    ) -> Result<(), Failure> {
+        if !self.inputs.iter().any(|i| i.path == path) {
+            let sha256 = Some(checksum()?.iter().map(|b| format!("{b:02x}")).collect());
+            self.inputs.push(Input { path: path.to_owned(), sha256 });
+        }
+        Ok(())
+    }
+
+    /// A photograph by rows.
+    pub(super) fn rows(&mut self, file: &str) -> Result<PhotoRows<File>, Failure> {
+        let path = self.path(file);
+        PhotoRows::open(self.file(&path)?).map_err(|e| Failure::Message(format!("{path}: {e}")))
     }
 
     /// A photograph.
     pub(super) fn photo(&mut self, file: &str) -> Result<Photo, Failure> {
-        let path = self.path(file);
-        let bytes = self.bytes(&path)?;
-        Photo::decode(&bytes).map_err(|e| Failure::Message(format!("{path}: {e}")))
+        let mut rows = self.rows(file)?;
+        rows.next(rows.height).map_err(|e| Failure::Message(format!("{}: {e}", self.path(file))))
+    }
+
+    /// An exposure by rows and its time: stated, or that of its EXIF data.
+    pub(super) fn exposure_rows(&mut self, exposure: &Exposure) -> Result<(PhotoRows<File>, f64), Failure> {
+        let path = self.path(&exposure.photo);
+        let time_s = self
+            .time_s(exposure)?
+            .ok_or_else(|| Failure::Message(format!("{path}: {}", Error::NoTime { name: exposure.photo.clone() })))?;
+        Ok((self.rows(&exposure.photo)?, time_s))
+    }
+
+    /// The time of an exposure: stated, or that of its EXIF data.
+    pub(super) fn time_s(&mut self, exposure: &Exposure) -> Result<Option<f64>, Failure> {
+        if exposure.time_s.is_some() {
+            return Ok(exposure.time_s);
+        }
+        let path = self.path(&exposure.photo);
+        Ok(exif_time_s(&mut BufReader::new(self.file(&path)?)))
     }
 
     /// An exposure and its time: stated, or that of its EXIF data.
     pub(super) fn exposure(&mut self, exposure: &Exposure) -> Result<(Photo, f64), Failure> {
-        let path = self.path(&exposure.photo);
-        let bytes = self.bytes(&path)?;
-        let wrong = |e: Error| Failure::Message(format!("{path}: {e}"));
-        let time_s = exposure.time_s.or_else(|| exif_time_s(&bytes));
-        let time_s = time_s.ok_or_else(|| wrong(Error::NoTime { name: exposure.photo.clone() }))?;
-        Ok((Photo::decode(&bytes).map_err(wrong)?, time_s))
+        let (mut rows, time_s) = self.exposure_rows(exposure)?;
+        let photo = rows.next(rows.height);
+        Ok((photo.map_err(|e| Failure::Message(format!("{}: {e}", self.path(&exposure.photo))))?, time_s))
+    }
+
+    /// Reads once more what was read before: what is noticed was told the first time, or will be the next.
+    pub(super) fn untold<T>(&mut self, action: impl FnOnce(&mut Self) -> T) -> T {
+        let (told, failed) = (self.findings.len(), self.notes.failed);
+        let out = action(self);
+        self.findings.truncate(told);
+        self.notes.failed = failed;
+        out
     }
 
     /// Notes that a photograph is left out, and why.
@@ -182,6 +235,10 @@ impl Photos {
         sink.finish(true)?;
         if self.notes.failed { Err(Failure::Reported) } else { Ok(()) }
     }
+}
+
+fn unreadable(path: &str, error: &io::Error) -> Failure {
+    Failure::Message(format!("{path}: cannot be read: {error}; expected a file"))
 }
 
 /// Whether a file is a manifest: its name ends in .toml.

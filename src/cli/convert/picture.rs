@@ -136,7 +136,8 @@ pub(super) fn page(
     }
     let figure = |(panel, caption): (Panel, &str)| -> Result<Figure, Failure> {
         let file = draw_panels(&[panel], None, Format::Svg).map_err(|e| fail(e.to_string()))?;
-        Ok(Figure { uri: data_uri(&file, Format::Svg), alt: caption.to_owned(), caption: caption.to_owned() })
+        let (uri, caption) = (data_uri(&file, Format::Svg), caption.to_owned());
+        Ok(Figure { uri, alt: caption.clone(), caption, large_letters: false })
     };
     let figures = panels.into_iter().map(figure).collect::<Result<Vec<_>, _>>()?;
     Ok(conversion_page::page(&Parts {

@@ -4,6 +4,7 @@ use crate::capture::camera::{Edge, fit_to_sphere};
 use crate::capture::lights::outline::Outline;
 use crate::capture::lights::view::{Ball, View};
 use crate::capture::manifest::{Shows, Stack};
+use crate::capture::radiance::Radiance;
 use crate::cli::Failure;
 use crate::cli::capture::develop::Darkroom;
 use crate::cli::capture::photos::Photos;
@@ -19,17 +20,15 @@ pub(super) fn align(photos: &mut Photos, room: &mut Darkroom) -> Result<Option<E
     };
     let view = View::new(Some(&camera)).map_err(message)?;
     let stacks: Vec<Stack> = photos.manifest.stack.iter().filter(|s| s.shows == Shows::Object).cloned().collect();
-    let mut brightest: Option<(usize, Vec<f32>)> = None;
+    let mut brightest: Option<((usize, usize), Vec<f32>)> = None;
     for stack in &stacks {
         // What cannot be read is told when it is measured.
-        let Ok((picture, _)) = room.picture(photos, stack) else { continue };
-        let luma = picture.values.chunks_exact(picture.channels).map(|p| p.iter().sum::<f32>());
-        let (_, most) = brightest.get_or_insert_with(|| (picture.width, vec![0.0; picture.width * picture.height]));
-        most.iter_mut().zip(luma).for_each(|(m, v)| *m = m.max(v));
-        room.keep(stack, picture);
+        if let Ok(pieces) = photos.untold(|photos| brighten(photos, room, stack, &mut brightest)) {
+            room.keep(stack, pieces);
+        }
     }
     let centre = glam::DVec3::from_array(sphere.centre_m);
-    let seen = brightest.and_then(|(width, most)| {
+    let seen = brightest.and_then(|((width, _), most)| {
         let top = most.iter().copied().fold(0.0, f32::max).max(f32::MIN_POSITIVE);
         let levels: Vec<f32> = most.iter().map(|v| v / top * 1e5).collect();
         let expected = view.outline(&Ball { centre, radius: sphere.radius_m })?;
@@ -70,4 +69,31 @@ pub(super) fn align(photos: &mut Photos, room: &mut Darkroom) -> Result<Option<E
             Ok(None)
         }
     }
+}
+
+/// Takes the brighter of each pixel's values and those of a stack, whose pieces it gives where there is room for them.
+fn brighten(
+    photos: &mut Photos,
+    room: &mut Darkroom,
+    stack: &Stack,
+    brightest: &mut Option<((usize, usize), Vec<f32>)>,
+) -> Result<Vec<Radiance>, Failure> {
+    let told = photos.findings.len();
+    let mut picture = room.develop(photos, stack)?;
+    let size = (picture.width, picture.height);
+    let (expected, most) = brightest.get_or_insert_with(|| (size, vec![0.0; size.0 * size.1]));
+    if *expected != size {
+        return Err(Failure::Message(format!("found {} × {} pixels; expected it like the others", size.0, size.1)));
+    }
+    let (mut pieces, mut first) = (Vec::new(), 0);
+    while let Some(piece) = picture.next(photos, room)? {
+        let luma = piece.values.chunks_exact(piece.channels).map(|p| p.iter().sum::<f32>());
+        most[first..].iter_mut().zip(luma).for_each(|(m, v)| *m = m.max(v));
+        first += piece.width * piece.height;
+        if size.0 * size.1 * piece.channels <= room.room() {
+            pieces.push(piece);
+        }
+    }
+    // What is damaged has to be read, and told, again.
+    Ok(if photos.findings.len() > told { Vec::new() } else { pieces })
 }

@@ -1,9 +1,11 @@
 //! From the photographs to all measurements: what `capture brdf` and `trade capture` have in common.
 
 use super::align::align;
+use super::lamps::patterns;
 use super::run::{Run, mask_of};
 use super::scene;
-use crate::capture::brdf::{Limits, Observations};
+use crate::brdf::table::Resolution;
+use crate::capture::brdf::{Gathered, Limits, Observations};
 use crate::capture::camera::Edge;
 use crate::cli::capture::develop::Darkroom;
 use crate::cli::capture::photos::{Given, Photos};
@@ -16,18 +18,17 @@ use crate::trade::capture::Choice;
 /// The measurements, and what they rest on.
 pub(super) struct Measured {
     pub run: Run,
-    pub all: Observations,
+    pub all: Gathered,
     pub aligned: Option<Edge>,
     pub scale: Scale,
 }
 
-/// Develops the photographs and measures the object in all of them; `mask` goes before that of the manifest, and `places` says whether stack and
-/// pixel of each measurement are kept.
+/// Develops the photographs and measures the object in all of them, for bins of `resolution`; `mask` goes before that of the manifest.
 pub(super) fn measure(
     photos: &mut Photos,
     limits: Limits,
     mask: Option<String>,
-    places: bool,
+    resolution: Resolution,
 ) -> Result<Measured, Failure> {
     let mut room = Darkroom::open(photos)?;
     let aligned = align(photos, &mut room)?;
@@ -35,8 +36,8 @@ pub(super) fn measure(
     scene.placement_px = aligned.as_ref().map_or(0.0, |e| e.standard_error_px);
     let mask = mask.or_else(|| photos.manifest.mask().map(|m| photos.path(m)));
     let mask = mask.map(|path| mask_of(photos, &path)).transpose()?;
-    let places = places.then(Vec::new);
-    let mut run = Run { scene, mask, room, places, seen: Vec::new(), all: None, strengths: Vec::new(), size: (0, 0) };
+    let (seen, strengths, patterns) = (Vec::new(), Vec::new(), patterns(photos)?);
+    let mut run = Run { scene, mask, room, seen, all: None, resolution, patterns, strengths, size: (0, 0) };
     let scale = run.strengths(photos)?;
     run.observe(photos)?;
     let Some(all) = run.all.take() else {
@@ -58,6 +59,7 @@ pub(in crate::cli) struct Retaken {
 
 /// What a choice gave.
 pub(in crate::cli) struct Taken {
+    /// All measurements, or an even draw of very many.
     pub all: Observations,
     /// Relative standard uncertainty of the variance of a pixel's area.
     pub pixel_variance_sd: f64,
@@ -86,9 +88,9 @@ impl Retaken {
         let mut photos = Photos::open("trade capture", &self.given, self.talk)?;
         photos.manifest.keep(choice.lights, choice.exposures);
         let limits = Limits { every: choice.every, ..Limits::default() };
-        let Measured { run, all, .. } = measure(&mut photos, limits, None, false)?;
+        let Measured { run, all, .. } = measure(&mut photos, limits, None, Resolution::MERL)?;
         Ok(Taken {
-            all,
+            all: all.kept,
             pixel_variance_sd: run.scene.pixel_variance_sd,
             inputs: photos.inputs,
             findings: photos.findings,

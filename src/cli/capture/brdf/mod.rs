@@ -3,6 +3,7 @@
 mod align;
 mod files;
 mod fill;
+mod lamps;
 mod measured;
 mod mesh;
 mod report;
@@ -19,7 +20,7 @@ use serde_json::json;
 use super::photos::{Form, Given, Photos, is_manifest};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Options, Selection, Weighting};
-use crate::capture::brdf::{Limits, Observations, Scene, apart, bin, deviations};
+use crate::capture::brdf::{Binned, Gathered, Limits, Observations, Scene, apart, deviations};
 use crate::capture::setup::Place;
 use crate::cli::brdf::Bins;
 use crate::cli::output::write_file;
@@ -32,7 +33,6 @@ use files::{Target, encode};
 use fill::{FillArgs, Filler};
 use measured::{Measured, measure};
 pub(in crate::cli) use measured::{Retaken, Taken};
-pub(super) use run::picture;
 use settings::UseArgs;
 
 /// Models that are fitted where none are named.
@@ -135,21 +135,35 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         max_self_view: a.max_self_view,
     };
     let mask = a.mask.as_ref().map(|p| p.display().to_string());
-    let Measured { mut run, mut all, aligned, scale } = measure(&mut photos, limits, mask, a.measurements.is_some())?;
+    let resolution = a.resolution.map_or(filler.resolution(), |r| r.0);
+    let Measured { mut run, mut all, aligned, scale } = measure(&mut photos, limits, mask, resolution)?;
     let camera = photos.manifest.camera.as_ref().and_then(|c| c.lens().ok());
     warn(&mut photos, &run.seen);
-    let scale = relative(&mut photos, scale, &mut all);
-    if let (Some(path), Some(places)) = (&a.measurements, &run.places) {
-        let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
-        write_file(path, capture_brdf::measurements(&run.seen, places, &all).as_bytes(), &read)?;
+    photos.notes.stage("bins and fits");
+    let mut binned = all.bin();
+    let scale = relative(&mut photos, scale, &mut all.kept, &mut binned);
+    if let Some(path) = &a.measurements {
+        let factor = if let Scale::Relative { factor } = scale { factor } else { 1.0 };
+        run.write_measurements(&mut photos, &all.kept.channels, factor, path)?;
     }
-    let binned = bin(&all, a.resolution.map_or(filler.resolution(), |r| r.0));
+    if all.stride > 1 {
+        let words = format!(
+            "of {} measurements every {}-th is kept for fits and comparisons; bins rest on all of them",
+            all.count, all.stride
+        );
+        photos.findings.push(Finding::info("K030", words).at(Location::default()));
+    }
+    let (count, drawn) = (all.count, kept_of(&all, &run.seen));
+    let all = all.kept;
     let samples = all.samples(run.scene.pixel_variance_sd).map_err(message)?;
     let options = Options { places: Some(a.subsample), ..Options::default() };
     let mut fits: Vec<Fit> = Vec::new();
     for template in &models {
         match fit::fit(template, &samples, &options) {
-            Ok(fit) => fits.push(fit),
+            Ok(mut fit) => {
+                fit.widen_errors();
+                fits.push(fit);
+            }
             Err(error) => photos.left_out(&template.to_string(), &message(error)),
         }
     }
@@ -164,7 +178,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         options: &options,
     });
     if let Some(answer) = &answer {
-        disagreements(&mut photos, &mut run.seen, &all, &fits[brdf_fit::best(answer)]);
+        disagreements(&mut photos, &mut run.seen, &drawn, &all, &fits[brdf_fit::best(answer)]);
     }
     let table = binned.table(&all).map_err(message)?;
     let filling = filler.fill(&mut photos, &table, answer.as_ref(), &scale)?;
@@ -183,6 +197,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let selection = Selection { weighting: Weighting::Equal, ..Selection::default() };
     let mut settings = brdf_fit::settings(&options, &selection);
     settings["weights"] = if all.has_errors() { "1/(c sigma)^2" } else { "equal" }.into();
+    settings["standard_error"] = "the larger of s^2 (J'WJ)^-1 and the robust one".into();
     if run.scene.pixel_variance_sd > 0.0 {
         settings["pixel_variance_relative_sd"] = run.scene.pixel_variance_sd.into();
     }
@@ -204,6 +219,7 @@ pub(super) fn brdf(a: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
         seen: &run.seen,
         scale: &scale,
         all: &all,
+        measurements: count,
         binned: &binned,
         filling: filling.as_ref(),
         fits: answer.as_ref(),
@@ -241,10 +257,19 @@ fn scene(photos: &mut Photos, limits: Limits) -> Result<Scene, Failure> {
     }
 }
 
+/// How many measurements of each picture are kept.
+fn kept_of(all: &Gathered, seen: &[StackSeen]) -> Vec<usize> {
+    let mut first = 0;
+    let of = |s: &StackSeen| {
+        first += s.counts.valid;
+        all.kept_of(first - s.counts.valid, s.counts.valid)
+    };
+    seen.iter().map(of).collect()
+}
+
 /// Pictures that the best fit does not describe as it does the others.
-fn disagreements(photos: &mut Photos, seen: &mut [StackSeen], all: &Observations, best: &Fit) {
-    let counts: Vec<usize> = seen.iter().map(|s| s.counts.valid).collect();
-    let found = deviations(all, &counts, best.brdf.as_ref());
+fn disagreements(photos: &mut Photos, seen: &mut [StackSeen], drawn: &[usize], all: &Observations, best: &Fit) {
+    let found = deviations(all, drawn, best.brdf.as_ref());
     for n in apart(&found) {
         let percent = 100.0 * found[n].unwrap_or(0.0);
         let words =
@@ -274,13 +299,14 @@ fn warn(photos: &mut Photos, seen: &[StackSeen]) {
 }
 
 /// Brings a relative result to a customary size.
-fn relative(photos: &mut Photos, scale: Scale, all: &mut Observations) -> Scale {
+fn relative(photos: &mut Photos, scale: Scale, all: &mut Observations, binned: &mut Binned) -> Scale {
     let Scale::Relative { .. } = scale else { return scale };
     let mut sorted = all.values.clone();
     let half = sorted.len() / 2;
     let median = *sorted.select_nth_unstable_by(half, f64::total_cmp).1;
     let factor = capture_brdf::RELATIVE_MEDIAN / median;
     all.scale(factor);
+    binned.scale(factor);
     let words = "neither strengths of the lights with the radiance of a sample nor a reference: the result is relative";
     let hint = "its median is 0.3/π; reflectances are ratios, not values";
     photos.findings.push(Finding::warning("K011", words).hint(hint).at(Location::default()));

@@ -104,7 +104,7 @@ fn pictures(
     out.energy.push(picture(sphere_panel(fit.brdf.as_ref(), &tint).into(), sphere)?);
     let factor = if let Scale::Relative { factor } = shown.scale { *factor } else { 1.0 };
     for seen in shown.seen.iter().filter(|s| s.counts.valid > 0) {
-        out.maps.extend(maps(photos, room, (scene, fit, factor), seen, &tint, more)?);
+        out.maps.extend(photos.untold(|photos| maps(photos, room, (scene, fit, factor), seen, &tint, more))?);
     }
     Ok(out)
 }
@@ -120,16 +120,21 @@ fn maps(
 ) -> Result<Vec<Figure>, Failure> {
     let shots = shots(&photos.manifest, Shows::Object)?;
     let Some(shot) = shots.iter().find(|s| s.name == seen.name) else { return Ok(Vec::new()) };
-    let (radiance, _) = shot.picture(photos, room)?;
+    let taking = shot.open(photos, room)?;
+    let bands = taking.channels;
     // The values of a relative result were multiplied by the factor: the lights are weaker by it.
     let strength: Vec<f64> = seen.strength.iter().map(|s| s / factor).collect();
-    let Some(maps) = scene.maps(&radiance, seen.place, &strength, fit.brdf.as_ref(), SIDE) else {
-        return Ok(Vec::new());
-    };
+    let Some(mut growing) = scene.empty_maps(taking.size, bands, SIDE) else { return Ok(Vec::new()) };
+    let scene = scene.lit_by(seen.pattern.clone());
+    taking.strips(photos, room, &mut |strip| {
+        scene.add_to_maps(&mut growing, strip, seen.place, &strength, fit.brdf.as_ref());
+        Ok(())
+    })?;
+    let maps = growing.maps;
     if let Some((median, rms)) = maps.spread() {
         more.residuals.push((seen.name.clone(), median, rms));
     }
-    let (photograph, model, difference) = maps_panels(&maps, tint, radiance.channels);
+    let (photograph, model, difference) = maps_panels(&maps, tint, bands);
     let name = &seen.name;
     Ok(vec![
         picture(photograph.into(), &format!("{name}: the photograph."))?,
@@ -138,9 +143,9 @@ fn maps(
     ])
 }
 
-/// A drawing in a page: lines and letters stay sharp.
+/// A drawing in a page: lines and letters stay sharp, and are large enough for a phone.
 fn figure(panel: Panel, caption: &str) -> Result<Figure, Failure> {
-    drawn(panel, caption, None, Format::Svg)
+    drawn(panel, caption, Some((520, 480)), Format::Svg)
 }
 
 /// A picture of pixels in a page, small enough to be sent.
@@ -150,5 +155,6 @@ fn picture(panel: Panel, caption: &str) -> Result<Figure, Failure> {
 
 fn drawn(panel: Panel, caption: &str, size: Option<(u32, u32)>, format: Format) -> Result<Figure, Failure> {
     let file = draw(&[panel], size, format).map_err(|e| Failure::Message(e.to_string()))?;
-    Ok(Figure { uri: data_uri(&file, format), alt: caption.to_owned(), caption: caption.to_owned() })
+    let (uri, caption) = (data_uri(&file, format), caption.to_owned());
+    Ok(Figure { uri, alt: caption.clone(), caption, large_letters: true })
 }

@@ -1,18 +1,26 @@
 //! The measurements of a run: strengths of the lights, and what each picture gives.
 
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::Arc;
+
 use super::message;
-use super::shots::{Shot, shots};
-use crate::capture::brdf::{Counts, Observations, Scene, Seen, reference_factor_sd, strength_from};
-use crate::capture::manifest::{Exposure, Shows, Stack};
-use crate::capture::photo::exif_time_s;
-use crate::capture::radiance::Radiance;
+use super::shots::{Shot, Taking, shots};
+use crate::brdf::table::{Channel, Resolution};
+use crate::capture::brdf::{Counts, Gathered, Observations, Scene, Seen, reference_factor_sd, strength_from};
+use crate::capture::lamp::Pattern;
+use crate::capture::manifest::Shows;
 use crate::capture::setup::{Light, Place};
 use crate::capture::{Error, Photo};
 use crate::cli::Failure;
 use crate::cli::capture::develop::Darkroom;
 use crate::cli::capture::photos::Photos;
+use crate::cli::output::Whole;
 use crate::finding::Finding;
-use crate::report::capture_brdf::{Scale, StackSeen};
+use crate::report::capture_brdf::{self, Scale, StackSeen};
+
+/// Samples that are kept of all measurements; beyond, an even draw of them.
+const DRAWN: usize = 6_000_000;
 
 /// Deviation of a reference from being diffuse above which it is told.
 const UNEVEN: f64 = 0.02;
@@ -29,10 +37,12 @@ pub(super) struct Run {
     pub scene: Scene,
     pub mask: Option<Vec<bool>>,
     pub room: Darkroom,
-    /// Stack by number in `seen` and pixel of each measurement, where they are asked for.
-    pub places: Option<Vec<(usize, (usize, usize))>>,
     pub seen: Vec<StackSeen>,
-    pub all: Option<Observations>,
+    pub all: Option<Gathered>,
+    /// Of the bins.
+    pub resolution: Resolution,
+    /// Of each light of the manifest, where it does not shine alike to all sides.
+    pub patterns: Vec<Option<Arc<Pattern>>>,
     /// Of each light of the manifest, per band or one for all.
     pub strengths: Vec<Vec<f64>>,
     /// Columns and rows of the pictures.
@@ -47,7 +57,7 @@ impl Run {
         if let Some(reference) = photos.manifest.reference.clone() {
             let (mut uneven, mut light_sd) = (0.0_f64, 0.0_f64);
             let of_reference = shots(&photos.manifest, Shows::Reference)?;
-            for light in &lights {
+            for (light, pattern) in lights.iter().zip(&self.patterns) {
                 let Some(shot) = of_reference.iter().find(|s| s.light == light.name) else {
                     if of_object.iter().any(|s| s.light == light.name) {
                         return Err(Failure::Message(format!(
@@ -58,13 +68,18 @@ impl Run {
                     self.strengths.push(vec![1.0]);
                     continue;
                 };
-                let (picture, name) = shot.picture(photos, &mut self.room)?;
-                let mut seen = Observations::new(picture.channels);
+                let picture = shot.open(photos, &mut self.room)?;
+                let name = picture.name.clone();
                 let ones = vec![1.0; picture.channels];
-                let counts = self
-                    .scene
-                    .observe(&picture, light.place, &ones, self.mask.as_deref(), &mut |s| seen.push(s))
-                    .map_err(|e| Failure::Message(format!("{name}: {e}")))?;
+                let mut seen = Gathered::new(Observations::new(picture.channels), self.resolution, DRAWN);
+                let scene = self.scene.lit_by(pattern.clone());
+                let (mask, mut counts) = (self.mask.as_deref(), Counts::default());
+                picture.strips(photos, &self.room, &mut |strip| {
+                    let found = scene.observe_rows(strip, light.place, &ones, mask, &mut |s| seen.push(s));
+                    counts.add(&found.map_err(|e| Failure::Message(format!("{name}: {e}")))?);
+                    Ok(())
+                })?;
+                let seen = seen.kept;
                 let Some(strength) = strength_from(&seen, &reference) else {
                     let why =
                         if seen.is_empty() { counts.why() } else { "its reflectances are not as many as its bands" };
@@ -120,7 +135,7 @@ impl Run {
             };
             let place = lights[number].place;
             // A mistake in the set-up ends the run; a picture that is of no use does not.
-            let (picture, name) = match shot.picture(photos, &mut self.room) {
+            let picture = match shot.open(photos, &mut self.room) {
                 Ok(found) => found,
                 Err(failure) if shots.len() > 1 => {
                     photos.left_out(&shot.name, &failure);
@@ -131,70 +146,116 @@ impl Run {
             if self.all.is_none() {
                 let nm = photos.manifest.wavelengths_nm();
                 let narrow = (!nm.is_empty()).then(|| Observations::of_wavelengths(&nm));
-                self.all = Some(narrow.unwrap_or_else(|| Observations::new(picture.channels)));
+                let none = narrow.unwrap_or_else(|| Observations::new(picture.channels));
+                self.all = Some(Gathered::new(none, self.resolution, DRAWN));
             }
-            if let Err(failure) = self.one(shot, &name, &picture, place, number) {
+            let name = picture.name.clone();
+            if let Err(failure) = self.one(photos, shot, picture, place, number) {
                 match failure {
-                    Error::Nothing { .. } if shots.len() > 1 => photos.left_out(&shot.name, &message(failure)),
-                    _ => return Err(Failure::Message(format!("{name}: {failure}"))),
+                    Missed::Unread(failure) if shots.len() > 1 => photos.left_out(&shot.name, &failure),
+                    Missed::Unread(failure) => return Err(failure),
+                    Missed::Unusable(error @ Error::Nothing { .. }) if shots.len() > 1 => {
+                        photos.left_out(&shot.name, &message(error));
+                    }
+                    Missed::Unusable(error) => return Err(Failure::Message(format!("{name}: {error}"))),
                 }
             }
         }
         // Without a measurement there is no result.
-        self.all.take_if(|all| all.is_empty());
+        self.all.take_if(|all| all.count == 0);
         Ok(())
     }
 
-    fn one(&mut self, shot: &Shot, name: &str, picture: &Radiance, place: Place, light: usize) -> Result<(), Error> {
+    fn one(
+        &mut self,
+        photos: &mut Photos,
+        shot: &Shot,
+        picture: Taking,
+        place: Place,
+        light: usize,
+    ) -> Result<(), Missed> {
         let Some(all) = &mut self.all else { return Ok(()) };
-        if all.channels.len() != picture.channels {
-            let expected = format!("{} channel(s)", all.channels.len());
-            return Err(Error::Size { name: name.to_owned(), found: picture.size(), expected });
+        let (size, bands) = (picture.size, picture.channels);
+        if all.kept.channels.len() != bands {
+            let expected = format!("{} channel(s)", all.kept.channels.len());
+            let found = format!("{} × {} pixels in {bands} channel(s)", size.0, size.1);
+            return Err(Missed::Unusable(Error::Size { name: picture.name, found, expected }));
         }
         let strength = match self.strengths[light].as_slice() {
-            [one] => vec![*one; picture.channels],
+            [one] => vec![*one; bands],
             each => each.to_vec(),
         };
-        let mut visit = |s: &Seen<'_>| {
-            all.push(s);
-            if let Some(places) = &mut self.places {
-                places.push((self.seen.len(), s.pixel));
+        let scene = self.scene.lit_by(self.patterns[light].clone());
+        let (mask, mut counts) = (self.mask.as_deref(), Counts::default());
+        let mut failed = None;
+        let read = picture.strips(photos, &self.room, &mut |strip| {
+            match scene.observe_rows(strip, place, &strength, mask, &mut |s| all.push(s)) {
+                Ok(found) => counts.add(&found),
+                Err(error) => {
+                    failed = Some(error);
+                    return Err(Failure::Reported);
+                }
             }
-        };
-        let counts: Counts = self.scene.observe(picture, place, &strength, self.mask.as_deref(), &mut visit)?;
-        self.size = (picture.width, picture.height);
+            Ok(())
+        });
+        if let Some(error) = failed {
+            return Err(Missed::Unusable(error));
+        }
+        read.map_err(Missed::Unread)?;
+        self.size = size;
         self.seen.push(StackSeen {
             name: shot.name.clone(),
             light: shot.light.clone(),
             place,
+            pattern: self.patterns[light].clone(),
             counts,
             strength,
             deviation: None,
         });
         if counts.valid == 0 {
-            return Err(Error::Nothing { stack: shot.name.clone(), why: counts.why().to_owned() });
+            return Err(Missed::Unusable(Error::Nothing { stack: shot.name.clone(), why: counts.why().to_owned() }));
         }
         Ok(())
     }
+
+    /// Writes every measurement, times `factor`, as CSV: the pictures are measured once more.
+    pub(super) fn write_measurements(
+        &mut self,
+        photos: &mut Photos,
+        channels: &[Channel],
+        factor: f64,
+        path: &Path,
+    ) -> Result<(), Failure> {
+        photos.notes.stage(&format!("measurements: {}", path.display()));
+        let read: Vec<String> = photos.inputs.iter().map(|i| i.path.clone()).collect();
+        let mut whole = Whole::open(path, &read)?;
+        let mut out = BufWriter::with_capacity(1 << 18, whole.file());
+        let cannot = |e: std::io::Error| Failure::Message(format!("{}: cannot be written: {e}", path.display()));
+        out.write_all(capture_brdf::measurements_header(channels).as_bytes()).map_err(cannot)?;
+        let shots = shots(&photos.manifest, Shows::Object)?;
+        for seen in self.seen.iter().filter(|s| s.counts.valid > 0) {
+            let Some(shot) = shots.iter().find(|s| s.name == seen.name) else { continue };
+            let scene = self.scene.lit_by(seen.pattern.clone());
+            let (mask, room, mut rows) = (self.mask.as_deref(), &mut self.room, String::new());
+            photos.untold(|photos| {
+                shot.open(photos, room)?.strips(photos, room, &mut |strip| {
+                    rows.clear();
+                    let mut add = |s: &Seen<'_>| capture_brdf::measurement(&mut rows, &seen.name, s, factor);
+                    scene.observe_rows(strip, seen.place, &seen.strength, mask, &mut add).map_err(message)?;
+                    out.write_all(rows.as_bytes()).map_err(cannot)
+                })
+            })?;
+        }
+        out.flush().map_err(cannot)?;
+        drop(out);
+        whole.finish()
+    }
 }
 
-/// The picture of a stack, and its path.
-pub(in crate::cli::capture) fn picture(photos: &mut Photos, stack: &Stack) -> Result<(Radiance, String), Failure> {
-    let [Exposure { photo, time_s }] = stack.exposures.as_slice() else {
-        return Err(Failure::Message(format!(
-            "found {} exposures in {}; expected one linear picture: `photopic capture merge` makes it",
-            stack.exposures.len(),
-            stack.name
-        )));
-    };
-    let path = photos.path(photo);
-    let bytes = photos.bytes(&path)?;
-    // A picture that says nothing of its time, such as a merged one, is radiance already.
-    let time_s = time_s.or_else(|| exif_time_s(&bytes)).unwrap_or(1.0);
-    let wrong = |e: Error| Failure::Message(format!("{path}: {e}"));
-    if !(time_s > 0.0 && time_s.is_finite()) {
-        return Err(wrong(Error::Time { name: photo.clone(), time_s }));
-    }
-    let picture = Radiance::decode(&bytes, time_s).map_err(wrong)?;
-    Ok((picture, path))
+/// Why a picture gave nothing.
+enum Missed {
+    /// It could not be read.
+    Unread(Failure),
+    /// It, or the set-up, is of no use.
+    Unusable(Error),
 }

@@ -70,7 +70,8 @@ impl Run {
             }
         }
         let what = if stack.shows == Shows::MirrorBall {
-            What::Highlight(highlight::find(&name, &photo, &in_use.outline).map_err(wrong)?)
+            let ball = &in_use.start.ball;
+            What::Highlight(highlight::find(&name, &photo, &in_use.outline, &self.view, ball).map_err(wrong)?)
         } else {
             let points = Points::of(&photo, &self.view, &in_use.start.ball, &in_use.outline);
             let shaded = shading::direction(&name, &points, self.linear || photo.is_linear()).map_err(wrong)?;

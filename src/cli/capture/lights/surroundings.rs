@@ -27,7 +27,7 @@ impl Run {
         let seen = seen.ok_or_else(|| message("found no mirror ball; expected one for --environment"))?;
         let stack = photos.manifest.stack.iter().find(|s| s.name == seen.stack).cloned();
         let stack = stack.ok_or_else(|| message("found no stack of the mirror ball; expected one"))?;
-        let picture = Darkroom::open(photos)?.picture(photos, &stack)?.0;
+        let picture = Darkroom::open(photos)?.picture(photos, &stack)?;
         let map =
             environment::equirectangular(&self.view, &balls[seen.ball], &picture, a.reflectance, a.width as usize);
         write_exr(photos, path, map)
