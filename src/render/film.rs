@@ -174,7 +174,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         for x in 0..width {
             // Streams of another instrument: the picture's own numbers stay unknown.
             let pixel = stream(self.instrument + u64::from(u32::MAX), y * width + x);
-            let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
+            let mut sampler = self.settings.sampler(pixel);
             let packets = self.packets.as_ref();
             let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
             for index in 0..samples {
@@ -207,7 +207,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     fn pixel(&self, tracer: &mut PathTracer<'_>, x: usize, y: usize, bands: &mut [f64]) -> Noise {
         bands.fill(0.0);
         let pixel = stream(self.instrument, y * self.description.width + x);
-        let mut sampler = Sampler::new(self.settings.seed, pixel, 0);
+        let mut sampler = self.settings.sampler(pixel);
         let mut faults = Faults::default();
         // Welford's running mean and sum of squared deviations of the luminance.
         let (mut mean, mut squares, mut count) = (0.0, 0.0, 0.0);

@@ -9,7 +9,7 @@ use super::goniophotometer::Leaving;
 use super::integrator::light::LightTracer;
 use super::integrator::path::{Limits, PathTracer};
 use super::ray::SurfacePoint;
-use super::sampler::Sampler;
+use super::sampler::{Points, Sampler};
 use super::scene::Scene;
 use super::sensor::response::Response;
 use super::shape::Shape;
@@ -42,6 +42,8 @@ pub struct Settings {
     pub seed: u64,
     /// What paths may do.
     pub limits: Limits,
+    /// How the random numbers lie.
+    pub points: Points,
     /// Running sums, up to 1, of the probabilities with which a band is kept where a path must be split, one per band.
     pub heroes: Vec<f64>,
     /// Whether packets from the lights help paths from the camera in making pictures
@@ -55,7 +57,13 @@ impl Settings {
     pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
         let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
-        Self { seed, limits, heroes, packets: false }
+        Self { seed, limits, points: Points::default(), heroes, packets: false }
+    }
+
+    /// The random numbers of a stream.
+    #[must_use]
+    pub fn sampler(&self, stream: u64) -> Sampler {
+        Sampler::new(self.seed, stream, 0).with(self.points)
     }
 
     /// The same with bands chosen one half alike, one half in proportion to `weights`: what each adds to the reading that counts. Where
@@ -120,7 +128,7 @@ impl<'a> Board<'a> {
             |(tracer, packets, leaving), (index, replicate)| {
                 let (instrument, meter) = &meters[index / REPLICATES];
                 let stream = stream(*instrument, index % REPLICATES);
-                let mut sampler = Sampler::new(settings.seed, stream, 0);
+                let mut sampler = settings.sampler(stream);
                 while replicate.samples() < samples {
                     sampler.start(replicate.samples());
                     let point = match &meter.place {

@@ -24,7 +24,7 @@ use super::timing::interleaved;
 use super::{Estimate, Figure, Measure, Sweep, Trial};
 use crate::brdf::description::template::Template;
 use crate::brdf::fit::{self, Fit, Uncertainty};
-use crate::brdf::table::{Channel, Resolution};
+use crate::brdf::table::Resolution;
 use crate::capture::brdf::{Binned, Observations, bin};
 
 /// Every so many-th pixel is tried.
@@ -71,10 +71,24 @@ pub struct CaptureSweep {
 }
 
 /// What a setting gave.
-struct Outcome {
-    channels: Vec<Channel>,
-    binned: Binned,
-    fit: Fit,
+pub(super) struct Outcome {
+    pub all: Observations,
+    pub binned: Binned,
+    pub fit: Fit,
+}
+
+impl Outcome {
+    /// Of measurements, or of why there are none.
+    pub fn new(
+        measured: Result<(Observations, f64), String>,
+        (template, options): (&Template, &fit::Options),
+        resolution: Resolution,
+    ) -> Result<Self, CaptureError> {
+        let (all, pixel_variance_sd) = measured.map_err(CaptureError::Measure)?;
+        let samples = all.samples(pixel_variance_sd)?;
+        let (binned, fit) = (bin(&all, resolution), fit::fit(template, &samples, options)?);
+        Ok(Self { all, binned, fit })
+    }
 }
 
 /// Why photographs could not be traded.
@@ -92,24 +106,23 @@ pub enum CaptureError {
     NoChoice,
 }
 
-/// Tries the choices, the first of which is the finest, each timed `repeats` times. `measure` does all from the photographs to the measurements,
-/// and says the relative standard uncertainty of the variance of a pixel's area ([`Observations::samples`]).
-///
-/// # Errors
-/// [`CaptureError`] of the finest; what another choice does is in [`CaptureSweep::failed`].
-pub fn sweep(
+/// Choices that were tried and compared with the first of them, the finest.
+pub(super) struct Compared {
+    pub choices: Vec<Choice>,
+    /// What they gave.
+    pub outcomes: Vec<Outcome>,
+    /// Their errors.
+    pub errors: Vec<Vec<Option<Estimate>>>,
+    pub figures: Vec<Figure>,
+    pub reference_errors: Vec<Option<f64>>,
+    pub failed: Vec<(Choice, String)>,
+}
+
+/// Tries the choices, the first of which is the finest.
+pub(super) fn compare(
     choices: Vec<Choice>,
-    (template, options): (&Template, &fit::Options),
-    resolution: Resolution,
-    repeats: usize,
-    mut measure: impl FnMut(&Choice) -> Result<(Observations, f64), String>,
-) -> Result<CaptureSweep, CaptureError> {
-    let mut outcome = |choice: &Choice| -> Result<Outcome, CaptureError> {
-        let (all, pixel_variance_sd) = measure(choice).map_err(CaptureError::Measure)?;
-        let samples = all.samples(pixel_variance_sd)?;
-        let (binned, fit) = (bin(&all, resolution), fit::fit(template, &samples, options)?);
-        Ok(Outcome { channels: all.channels, binned, fit })
-    };
+    mut outcome: impl FnMut(&Choice) -> Result<Outcome, CaptureError>,
+) -> Result<Compared, CaptureError> {
     let (mut tried, mut outcomes, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for choice in choices {
         match outcome(&choice) {
@@ -124,15 +137,33 @@ pub fn sweep(
     let finest = outcomes.first().ok_or(CaptureError::NoChoice)?;
     let parameters = finest.fit.estimates.iter().map(|e| {
         let name = finest.fit.name_of(e);
-        let key = e.band.map_or_else(|| name.clone(), |b| format!("{name}.{}", finest.channels[b]));
+        let key = e.band.map_or_else(|| name.clone(), |b| format!("{name}.{}", finest.all.channels[b]));
         Figure { key: Cow::Owned(key), unit: "", measure: Measure::Relative }
     });
     let figures: Vec<Figure> = FIGURES.iter().cloned().chain(parameters).collect();
     let mut reference_errors = own_errors(&finest.binned).to_vec();
     reference_errors.extend(finest.fit.estimates.iter().map(relative_error));
-    let errors: Vec<Vec<Option<Estimate>>> = outcomes.iter().map(|o| errors(finest, o)).collect();
-    let timings = interleaved(tried.len(), repeats, |i| outcome(&tried[i]))?;
-    let trials = tried.iter().zip(timings).zip(errors).map(|((choice, timing), errors)| Trial {
+    let errors = outcomes.iter().map(|o| errors(finest, o)).collect();
+    Ok(Compared { choices: tried, errors, figures, reference_errors, failed, outcomes })
+}
+
+/// Tries the choices, the first of which is the finest, each timed `repeats` times. `measure` does all from the photographs to the measurements,
+/// and says the relative standard uncertainty of the variance of a pixel's area ([`Observations::samples`]).
+///
+/// # Errors
+/// [`CaptureError`] of the finest; what another choice does is in [`CaptureSweep::failed`].
+pub fn sweep(
+    choices: Vec<Choice>,
+    (template, options): (&Template, &fit::Options),
+    resolution: Resolution,
+    repeats: usize,
+    mut measure: impl FnMut(&Choice) -> Result<(Observations, f64), String>,
+) -> Result<CaptureSweep, CaptureError> {
+    let mut outcome = |choice: &Choice| Outcome::new(measure(choice), (template, options), resolution);
+    let compared = compare(choices, &mut outcome)?;
+    let timings = interleaved(compared.choices.len(), repeats, |i| outcome(&compared.choices[i]))?;
+    let Compared { choices, errors, figures, reference_errors, failed, .. } = compared;
+    let trials = choices.iter().zip(timings).zip(errors).map(|((choice, timing), errors)| Trial {
         settings: [choice.lights, choice.exposures, choice.every].map(|n| n.to_string()).to_vec(),
         offered: true,
         timing,
@@ -145,7 +176,7 @@ pub fn sweep(
         reference_errors,
         trials: trials.collect(),
     };
-    Ok(CaptureSweep { sweep, choices: tried, failed })
+    Ok(CaptureSweep { sweep, choices, failed })
 }
 
 /// The relative standard errors of the finest setting's bins: median and [`HIGH`] percentile; its coverage is what it is.
@@ -163,20 +194,24 @@ fn relative_error(estimate: &fit::Estimate) -> Option<f64> {
 
 /// The errors of all figures against the finest setting.
 fn errors(finest: &Outcome, found: &Outcome) -> Vec<Option<Estimate>> {
-    let own: BTreeMap<usize, &[f64]> = found.binned.bins.iter().map(|b| (b.bin, b.values.as_slice())).collect();
-    let apart = finest.binned.bins.iter().flat_map(|a| {
-        let found = own.get(&a.bin);
-        (a.values.iter().enumerate()).map(move |(band, a)| found.map_or(f64::INFINITY, |b| (b[band] / a - 1.0).abs()))
-    });
-    let apart: Vec<f64> = apart.collect();
-    let lost = finest.binned.bins.iter().filter(|b| !own.contains_key(&b.bin)).count();
-    let figures =
-        [percentile(apart.clone(), 0.5), percentile(apart, HIGH), Some(lost as f64 / finest.binned.bins.len() as f64)];
     let parameters = finest.fit.estimates.iter().zip(&found.fit.estimates).map(|(a, b)| {
         let error = (b.value / a.value - 1.0).abs();
         error.is_finite().then_some(error)
     });
-    figures.into_iter().chain(parameters).map(|e| e.map(Estimate::exact)).collect()
+    let figures = apart(&finest.binned, &found.binned).into_iter().chain(parameters);
+    figures.map(|e| e.map(Estimate::exact)).collect()
+}
+
+/// How far bins are from those of the finest setting: the errors of [`FIGURES`].
+pub(super) fn apart(finest: &Binned, found: &Binned) -> [Option<f64>; 3] {
+    let own: BTreeMap<usize, &[f64]> = found.bins.iter().map(|b| (b.bin, b.values.as_slice())).collect();
+    let apart = finest.bins.iter().flat_map(|a| {
+        let found = own.get(&a.bin);
+        (a.values.iter().enumerate()).map(move |(band, a)| found.map_or(f64::INFINITY, |b| (b[band] / a - 1.0).abs()))
+    });
+    let apart: Vec<f64> = apart.collect();
+    let lost = finest.bins.iter().filter(|b| !own.contains_key(&b.bin)).count();
+    [percentile(apart.clone(), 0.5), percentile(apart, HIGH), Some(lost as f64 / finest.bins.len() as f64)]
 }
 
 /// The value below which a share of them lies (nearest rank); `None` where it is no finite number.

@@ -46,7 +46,10 @@ fn errors_are_those_between_two_conversions_and_the_recommended_one_keeps_its_wo
         let of = |knob: &str| trial["settings"][knob].as_str().expect("a word").trim_end_matches(" nm").to_owned();
         let (step, rule, range, interpolation) = (of("step"), of("rule"), of("range"), of("interpolation"));
         let mut options = vec!["--rule", rule.as_str()];
-        if step != "own" {
+        let thin = step.strip_prefix("adaptive to ");
+        if let Some(tolerance) = thin {
+            options.extend(["--thin", tolerance]);
+        } else if step != "own" {
             options.extend(["--resample", step.as_str(), "--interpolation", interpolation.as_str()]);
         }
         if range != "all" {

@@ -62,9 +62,12 @@ fn figure(values: &[f64]) -> (f64, f64) {
 #[test]
 fn parallel_light_comes_through_a_pane_as_fresnel_says() {
     let (b, c) = ([1.621_539_02, 0.256_287_842, 1.644_475_52], [0.012_224_145_7, 0.059_573_677_5, 147.468_793]);
-    for (samples, projection) in [
-        (1024, "field_of_view = \"40 deg\""),
-        (1024, "field_of_view = \"40 deg\", aperture_radius = \"2 cm\", focus = \"0.5 m\""),
+    // Packets with a wavelength of their own: as many times the samples as there are, for as much noise.
+    for (samples, render, projection) in [
+        (1024, "", "field_of_view = \"40 deg\""),
+        (1024, "", "field_of_view = \"40 deg\", aperture_radius = \"2 cm\", focus = \"0.5 m\""),
+        (8192, "wavelengths_per_path = \"one\"", "field_of_view = \"40 deg\""),
+        (1024, "sampler = \"independent\"", "field_of_view = \"40 deg\""),
     ] {
         let text = format!(
             r#"
@@ -72,6 +75,7 @@ fn parallel_light_comes_through_a_pane_as_fresnel_says() {
 solver = "bidirectional"
 max_edges = 4
 wavelength_step_nm = 40
+{render}
 [[material]]
 name = "flint"
 dielectric = {{ sellmeier = {{ b = {b:?}, c_um2 = {c:?} }} }}

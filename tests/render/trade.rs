@@ -62,8 +62,15 @@ fn errors_fall_as_theory_says_and_what_is_recommended_holds_in_95_of_100_runs() 
     let trials = result["trials"].as_array().expect("trials");
     let knob = |t: &Value, name: &str| t["settings"][name].as_str().expect("a word").to_owned();
     let of_samples = |t: &&Value| {
-        let others =
-            [("solver", "path"), ("max_edges", "any"), ("wavelength_tolerance", "0.001"), ("model", "minimal")];
+        let others = [
+            ("solver", "path"),
+            ("max_edges", "any"),
+            ("roulette_from", "4"),
+            ("sampler", "sobol"),
+            ("wavelengths", "to 0.001"),
+            ("wavelengths_per_path", "all"),
+            ("model", "minimal"),
+        ];
         others.iter().all(|(name, value)| knob(t, name) == *value)
     };
     let points: Vec<(f64, f64)> = (trials.iter().filter(of_samples))
@@ -83,6 +90,8 @@ fn errors_fall_as_theory_says_and_what_is_recommended_holds_in_95_of_100_runs() 
     // Cut paths and direct light lose what bounces on: of ρ = 0.6 that is more than any noise, and it is told.
     let effects = &result["effects"];
     assert!(effects["solver"]["matters"] == true && effects["max_edges"]["matters"] == true, "{effects}");
+    // Every knob is turned alone.
+    assert_eq!(effects.as_object().map(serde_json::Map::len), Some(8), "{effects}");
     // 200 runs of what was recommended with seeds of their own, against a long one.
     let description = Description::parse(HOLLOW).expect("a scene");
     let built = build(HOLLOW, &description, &NoFiles).expect("a scene");

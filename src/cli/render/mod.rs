@@ -239,7 +239,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         meter_samples: Some(task.meter_samples),
         seed: Some(task.seed),
         model: Some(if task.full { Model::Full } else { Model::Minimal }),
-        settings: Settings::default(),
+        settings: Settings::parse(&format!("{}: settings", a.shards[0]), task.settings.clone())?,
     };
     let work = Work::new(&task.scene, &overrides)?;
     if work.fingerprint != header.fingerprint {

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use super::audit::bias::SingleScattering;
 use super::bands::Bands;
 use super::description::spectrum::SpectrumSource;
-use super::description::{Description, Error, Model, Solver};
+use super::description::{Carried, Description, Error, Model, Solver};
 use super::format::Object;
 use super::integrator::path::{Follow, Limits};
 use super::light::Light;
@@ -209,13 +209,23 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     };
     let shadows = render.solver != Solver::Preview;
     let polarisation = analysis.polarisation;
-    let limits = Limits { follow, max_edges: render.max_edges, polarisation, shadows, ..Limits::default() };
+    if render.roulette_from == 0 {
+        return Err(builder.wrong(&(0..0), "a `roulette_from` of 0; expected the number of an edge, from 1"));
+    }
+    let limits = Limits {
+        follow,
+        max_edges: render.max_edges,
+        roulette_from: render.roulette_from,
+        polarisation,
+        shadows,
+        single_band: render.wavelengths_per_path == Carried::One,
+    };
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;
     let packets = render.solver == Solver::Bidirectional;
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
-    let settings = Settings { packets, ..settings };
+    let settings = Settings { packets, points: render.sampler, ..settings };
     Ok(Built {
         scene,
         instruments,
