@@ -126,7 +126,10 @@ fn the_self_check_passes_and_has_a_row_per_case() {
     let document = json(&document);
     let cases = document["results"].as_array().expect("cases");
     let areas: std::collections::BTreeSet<&str> = cases.iter().filter_map(|c| c["area"].as_str()).collect();
-    assert_eq!(areas.into_iter().collect::<Vec<_>>(), ["lamps", "materials", "pictures", "scenes", "spectra"]);
+    assert_eq!(
+        areas.into_iter().collect::<Vec<_>>(),
+        ["captures", "colour", "lamps", "materials", "photometry", "pictures", "scenes", "spectra"]
+    );
     assert!(cases.iter().all(|c| c["passes"] == true && c["error"].as_f64() <= c["allowed"].as_f64()), "{document}");
     let (code, table, _) = run(&["selfcheck", "--csv"]);
     assert_eq!((code, table.lines().count()), (0, cases.len() + 1));

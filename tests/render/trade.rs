@@ -160,6 +160,8 @@ fn what_a_scene_requires_is_confirmed_by_rendering_both_ways() {
     let noise = all.iter().chain(&six).map(|(v, s)| s / v).fold(0.0, f64::max);
     let off = off.fold(0.0, f64::max);
     assert!(off > 0.01 && off < simpler + 3.0 * noise, "{off} ± {noise}, {simpler}");
+    // Grey walls under equal energy: three colours multiply as wavelengths do.
+    assert_eq!(of("wavelengths")["needed"]["model"], "RGB (linear sRGB)");
     // Wavelengths: the renderer's own choice at that error, and one rung lower is beyond it.
     let wavelengths = of("wavelengths");
     assert!(number(&wavelengths["needed"]["error"]) <= 0.01, "{wavelengths}");
@@ -174,4 +176,45 @@ fn what_a_scene_requires_is_confirmed_by_rendering_both_ways() {
     let paths = all.iter().find(|r| r["question"] == "paths").expect("paths");
     assert_eq!(paths["needed"]["model"], "direct light", "{paths}");
     assert!(paths["because"].as_str().is_some_and(|b| b.contains("nothing scatters")), "{paths}");
+}
+
+/// A green ball under an orange lamp of few wavelengths: three colours do not carry it, and the wavelengths that do are confirmed by rendering
+/// with them, with those of the rung below, and with all.
+#[test]
+fn the_wavelengths_that_a_scene_requires_are_confirmed_by_rendering_both_ways() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = HOLLOW
+        .replace("reflectance = 0.6", "reflectance = [[500, 0.02], [520, 0.2], [560, 0.2], [600, 0.02]]")
+        .replace("radiance = \"1000 cd/m2\"", "radiance = \"1000 cd/m2\", spectrum = \"FL11\"");
+    let path = scene(&folder, &text);
+    let document = json(photopic().args(["require", "--json", "--error", "1%", "--meter-samples", "64"]).arg(&path));
+    let all = document["results"][0]["requirements"].as_array().expect("requirements").clone();
+    let wavelengths = all.iter().find(|r| r["question"] == "wavelengths").expect("wavelengths");
+    let rungs = wavelengths["rungs"].as_array().expect("rungs");
+    assert!(rungs[0]["model"] == "RGB (linear sRGB)" && number(&rungs[0]["error"]) > 0.01, "{wavelengths}");
+    let file = folder.path().join("few.toml");
+    let render = |key: &str| {
+        std::fs::write(&file, format!("[render]\n{key}\n")).expect("written");
+        let mut render = photopic();
+        render.arg("render").arg(&path).args(["--json", "--meter-samples", "65536", "--packets", "0", "--settings"]);
+        json(render.arg(&file))["results"][0].clone()
+    };
+    let full = render("model = \"full\"");
+    for rung in ["needed", "simpler"] {
+        let error = number(&wavelengths[rung]["error"]);
+        assert_eq!(error <= 0.01, rung == "needed", "{wavelengths}");
+        let few = render(&format!("wavelength_tolerance = {}", error * (1.0 + 1e-9)));
+        let count = format!("{} wavelengths", few["model"]["wavelengths"]["count"]);
+        assert_eq!(wavelengths[rung]["model"], count.as_str());
+        // One seed, and the same paths: what differs is the sum over wavelength, up to what chance ends elsewhere.
+        for (a, b) in
+            full["sensors"].as_array().expect("sensors").iter().zip(few["sensors"].as_array().expect("sensors"))
+        {
+            let noise = number(&a["standard_error"]).hypot(number(&b["standard_error"])) / number(&a["value"]);
+            let off = (number(&b["value"]) / number(&a["value"]) - 1.0).abs();
+            // Errors are relative to the largest of X, Y and Z, of which Y is more than 0.9 here; more than two reflections, which are not among
+            // the products that wavelengths are chosen by, are 0.2³/0.8 = 1 % of the light.
+            assert!(off < 1.2 * error + 4.5 * noise, "{rung}: {off} ± {noise}, {error}");
+        }
+    }
 }

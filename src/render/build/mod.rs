@@ -242,6 +242,16 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     })
 }
 
+/// What three colours instead of wavelengths would leave of the light that the scene's spectra become: the greatest error of X, Y and Z of an
+/// emission, reflected up to twice, relative to the largest of the three, by multiplication in linear sRGB; `None` of spectral lines.
+///
+/// # Errors
+/// The first mistake in the scene's spectra, with its place in the text.
+pub fn error_in_rgb(text: &str, description: &Description, files: &dyn Files) -> Result<Option<f64>, Error> {
+    let builder = Builder { text, description, files, meshes: RefCell::default(), pictures: RefCell::default() };
+    Ok(colour::Colours::new(&builder)?.error_in_rgb())
+}
+
 /// The sphere around all bounded surfaces, and around the origin where there are none.
 fn around(parts: &[Part]) -> BoundingSphere {
     let bounds: Vec<_> = parts.iter().map(|p| p.shape.bounds()).filter(super::shape::Bounds::is_finite).collect();
