@@ -26,7 +26,7 @@ pub(super) fn checks() -> Vec<Check> {
             "CIEDE2000 of L* 50 and 50 + 2⁻³⁰",
             "S_L = 1",
             2_f64.powi(-30),
-            { ciede2000(grey, [50.0 + 2_f64.powi(-30), 0.0, 0.0]) },
+            ciede2000(grey, [50.0 + 2_f64.powi(-30), 0.0, 0.0]),
             1e-14,
         ),
         check("sRGB of 1e-300", "IEC 61966-2-1", 12.92e-300, Encoding::Srgb.encode(1e-300), 1e-15),

@@ -63,7 +63,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "EXTENT", value_parser = model)]
     model: Option<Model>,
     /// A file with `[render]` keys in place of the scene's, as `trade render --settings` writes it; options given here go before it.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["preview", "checkpoint", "resume", "shard"])]
+    #[arg(long, value_name = "FILE", conflicts_with = "preview")]
     settings: Option<PathBuf>,
     /// Names all random numbers, instead of the scene's.
     #[arg(long, value_name = "NUMBER")]

@@ -30,7 +30,7 @@ pub(super) struct Settings {
 
 /// The longest path.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged, expecting = "a number of edges, or \"any\"")]
+#[serde(untagged, expecting = "found something else; expected a number of edges, or \"any\"")]
 enum Edges {
     Most(u32),
     Any(Any),

@@ -181,8 +181,11 @@ impl Colours {
 
     /// Every emission by itself, reflected once by every material, and twice by every pair of them.
     pub(super) fn products(&self) -> Vec<Box<dyn Fn(f64) -> f64 + '_>> {
-        let product = |chain: Vec<&'_ Colour>| move |nm: f64| chain.iter().map(|c| c.at(nm)).product::<f64>();
-        self.chains().into_iter().map(|chain| Box::new(product(chain)) as Box<dyn Fn(f64) -> f64 + '_>).collect()
+        let mut out: Vec<Box<dyn Fn(f64) -> f64 + '_>> = Vec::new();
+        for chain in self.chains() {
+            out.push(Box::new(move |nm| chain.iter().map(|c| c.at(nm)).product()));
+        }
+        out
     }
 
     /// The greatest error of X, Y and Z of the same products, relative to the largest of the three, where light is its linear sRGB and a
