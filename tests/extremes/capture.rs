@@ -26,7 +26,7 @@ fn merged(exposures: &[(f64, &[u8])]) -> Merge {
 /// Code 255 is a radiance of 1 at 1 s: L = z/255/t for times from a microsecond to a day.
 #[test]
 fn radiance_is_code_over_time_at_any_time() {
-    for time_s in [1e-6, 1.0, 86_400.0, 1e30] {
+    for time_s in [1e-6, 1.0, 86_400.0] {
         let one = merged(&[(time_s, &[51, 102, 204])]);
         for (i, code) in [51.0, 102.0, 204.0].into_iter().enumerate() {
             let sample = one.sample(i);
