@@ -33,6 +33,10 @@ USUAL = {
 }
 
 
+# Figures whose errors are not relative, and their units.
+ABSOLUTE = {"cct_k": "K", "cri_ra": "", "ln_rms": "", "albedo": "", "chromaticity_xy": "", "delta_e_2000": "", "coverage_lost": ""}
+
+
 @dataclass
 class Trade:
     """One input: the errors asked for by figure (relative ones as fractions, the others in the figure's unit), and what is typed."""
@@ -147,46 +151,47 @@ def time(seconds: float) -> str:
     return f"{1e6 * seconds:.0f} µs" if seconds < 1e-3 else f"{1e3 * seconds:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"
 
 
-def error(figure: dict, value: float) -> str:
-    if figure["measure"] == "relative":
-        return f"{digits(100 * value)} %"
-    return f"{digits(value)} {figure['unit']}".strip()
+def error(figure: str, value: float) -> str:
+    return f"{digits(value)} {ABSOLUTE[figure]}".strip() if figure in ABSOLUTE else f"{digits(100 * value)} %"
 
 
-def recommendation(result: dict, asked: float) -> list[str]:
+def bound(result: dict, trial: dict, figure: str) -> float | None:
+    """What `error_bound` is of the figure that was asked for."""
+    found, own = trial["errors"][figure], result["reference_errors"][figure]
+    return None if found is None or own is None else found["high"] + own
+
+
+def recommendation(result: dict, figure: str, asked: float) -> list[str]:
     """The fastest setting that guarantees the error, as `--error` finds it."""
-    figure = result["figure"]
-    meeting = [t for t in result["trials"] if t["offered"] and t["error_bound"] is not None and t["error_bound"] <= asked]
+    bounds = [(t, bound(result, t, figure)) for t in result["trials"] if t["offered"]]
+    meeting = [(t, b) for t, b in bounds if b is not None and b <= asked]
     if not meeting:
         return [error(figure, asked), "—", "—", "none of those tried"]
-    best = min(meeting, key=lambda t: t["time_s"]["median_s"])
+    best, guaranteed = min(meeting, key=lambda pair: pair[0]["time_s"]["median_s"])
     words = [f"{k} {v}" if v.isdigit() else v for k, v in best["settings"].items() if v not in USUAL.get(k, ())]
-    return [error(figure, asked), error(figure, best["error_bound"]), time(best["time_s"]["median_s"]), ", ".join(words)]
+    return [error(figure, asked), error(figure, guaranteed), time(best["time_s"]["median_s"]), ", ".join(words)]
 
 
 def table(header: list[str], rows: list[list[str]]) -> list[str]:
     return ["| " + " | ".join(r) + " |" for r in [header, ["---"] * len(header), *rows]] + [""]
 
 
-def effects(result: dict) -> list[list[str]]:
+def effects(result: dict, figure: str) -> list[list[str]]:
     rows = []
     for knob, e in result["effects"].items():
         matters = "" if e["matters"] else "within the noise"
-        rows.append([f"`{knob}`", error(result["figure"], e["error"]), f"{e['time_ratio']:.2g}", matters])
+        rows.append([f"`{knob}`", error(figure, e["error"]), f"{e['time_ratio']:.2g}", matters])
     return rows
 
 
 def section(trade: Trade) -> list[str]:
     """Recommendations by figure, what each knob does to the first of them, a picture."""
+    first = next(iter(trade.asked))
+    result = run(trade, trade.option, first, "--plot", str(PICTURES / f"{trade.picture}.svg"))
+    rows = [[figure, *recommendation(result, figure, asked)] for figure, errors in trade.asked.items() for asked in errors]
     out = [f"### {trade.title}", "", f"`photopic trade {trade.verb} {trade.words} {trade.option} {trade.option[2:].upper()} --error ERROR`", ""]
-    rows, first = [], next(iter(trade.asked))
-    for figure, errors in trade.asked.items():
-        plot = ["--plot", str(PICTURES / f"{trade.picture}.svg")] if figure == first else []
-        result = run(trade, trade.option, figure, *plot)
-        shown = result if figure == first else shown
-        rows += [[figure, *recommendation(result, asked)] for asked in errors]
     out += table([trade.option[2:], "asked", "guaranteed", "time", "fastest setting"], rows)
-    out += table(["knob alone", f"changes `{first}` by at most", "and time by", ""], effects(shown))
+    out += table(["knob alone", f"changes `{first}` by at most", "and time by", ""], effects(result, first))
     return out + [f"![error over time](accuracy/{trade.picture}.svg)", ""]
 
 
