@@ -55,7 +55,7 @@ fn number(value: &Value) -> f64 {
 fn errors_fall_as_theory_says_and_what_is_recommended_holds_in_95_of_100_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let best = folder.path().join("best.toml");
-    let arguments = ["trade", "render", "--error", "1%", "--sensor", "aside", "--json", "--repeats", "10"];
+    let arguments = ["trade", "render", "--error", "2%", "--sensor", "aside", "--json", "--repeats", "10"];
     let path = scene(&folder, HOLLOW);
     let document = json(photopic().args(arguments).arg("--settings").arg(&best).arg(&path));
     let result = &document["results"][0];
@@ -101,7 +101,7 @@ fn errors_fall_as_theory_says_and_what_is_recommended_holds_in_95_of_100_runs() 
     let chosen = &result["recommended"]["settings"];
     let samples: u64 = chosen["meter_samples"].as_str().expect("a word").parse().expect("a number");
     assert_eq!((chosen["solver"].as_str(), chosen["max_edges"].as_str()), (Some("path"), Some("any")));
-    let within = (0..200).filter(|seed| (read(&built, samples, 1000 + seed)[1] / truth - 1.0).abs() <= 0.01).count();
+    let within = (0..200).filter(|seed| (read(&built, samples, 1000 + seed)[1] / truth - 1.0).abs() <= 0.02).count();
     assert!(within >= 190, "{within} of 200 with {chosen}");
     // The file is taken by the renderer itself: as many samples of every meter.
     let rendered = json(photopic().arg("render").arg(&path).arg("--json").arg("--settings").arg(&best));

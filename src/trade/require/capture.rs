@@ -4,7 +4,7 @@
 //! error on top, as in [`crate::trade::capture`]. A model, a coarser table or a single band takes the place of every measurement, which are
 //! then sorted into the same bins: so that what a bin's width does to a lobe is in both.
 
-use super::{Requirement, Rung};
+use super::{Requirement, Rung, nth};
 use crate::brdf::Brdf;
 use crate::brdf::coordinates::HalfDiff;
 use crate::brdf::description::template::Template;
@@ -62,7 +62,7 @@ pub fn capture(
     let pixels = pixels.into_iter().map(|i| {
         let model = match found.choices[i].every {
             1 => "every pixel".to_owned(),
-            n => format!("every {n}th pixel of every {n}th row"),
+            n => format!("every {0} pixel of every {0} row", nth(n)),
         };
         Rung { model, error: bound(i) }
     });

@@ -67,6 +67,11 @@ fn rung(sweep: &Sweep, figure: usize, model: impl Into<String>, trials: impl Ite
     Some(Rung { model: model.into(), error: best })
 }
 
+/// Which of so many is taken, of 2, 4 and 8.
+fn nth(n: usize) -> String {
+    format!("{n}{}", if n == 2 { "nd" } else { "th" })
+}
+
 /// The numbers of the choices that are as said.
 fn those<'a, C>(choices: &'a [C], is: impl Fn(&C) -> bool + 'a) -> impl Iterator<Item = usize> + 'a {
     choices.iter().enumerate().filter(move |(_, c)| is(c)).map(|(i, _)| i)
@@ -157,7 +162,7 @@ pub fn lamp(luminaire: &Luminaire, height_m: f64, most: f64) -> Result<Vec<Requi
     parts.dedup();
     let angles = parts.iter().filter_map(|every| {
         let is = move |c: &lamp::Choice| plain(c) && c.near_ratio == nearest && c.every == *every;
-        let [h, v] = every.map(|n| if n == 1 { "all".to_owned() } else { format!("every {n}th") });
+        let [h, v] = every.map(|n| if n == 1 { "all".to_owned() } else { format!("every {}", nth(n)) });
         rung(sweep, floor, format!("{h} of the planes, {v} of the angles in them"), those(choices, is))
     });
     let mut angles = Requirement::new("angles", &figure, angles.collect(), most);
