@@ -30,6 +30,6 @@ pub(super) fn checks() -> Vec<Check> {
             1e-14,
         ),
         check("sRGB of 1e-300", "IEC 61966-2-1", 12.92e-300, Encoding::Srgb.encode(1e-300), 1e-15),
-        check("sRGB of 1e9", "IEC 61966-2-1, 50 digits", 5932.645_980_758_183, Encoding::Srgb.encode(1e9), 1e-14),
+        check("sRGB of 1e9", "IEC 61966-2-1, 50 digits", 5_932.645_980_758_183, Encoding::Srgb.encode(1e9), 1e-14),
     ]
 }

@@ -112,7 +112,7 @@ fn white_has_no_hue_and_the_locus_is_pure() {
 #[test]
 fn tone_curves_go_on_beyond_their_ends() {
     for (linear, coded) in
-        [(1e-300, 12.92e-300), (1e9, 5932.645_980_758_183), (-1e9, -5932.645_980_758_183), (0.0, 0.0)]
+        [(1e-300, 12.92e-300), (1e9, 5_932.645_980_758_183), (-1e9, -5_932.645_980_758_183), (0.0, 0.0)]
     {
         close(Encoding::Srgb.encode(linear), coded, 1e-14, "sRGB");
         close(Encoding::Srgb.decode(coded), linear, 1e-14, "and back");
