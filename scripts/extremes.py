@@ -33,7 +33,7 @@ def main() -> None:
         "# To what magnitude figures hold their digits",
         "",
         "Written by `scripts/extremes.py` from a run of `photopic selfcheck`, which repeats it on any machine. Expectations are closed forms, evaluated",
-        "with 40 digits, or a standard's; the digits are those that agree with them, the digits asked for those below which `selfcheck` says no. The",
+        "with 40 or 50 digits, or a standard's; the digits are those that agree with them, the digits asked for those below which `selfcheck` says no. The",
         "long versions are the tests in `tests/extremes` and beside each module.",
         "",
     ]

@@ -15,6 +15,7 @@ use photopic::luminaire::spectral::{Error, SpectralLamp, by_direction, combine};
 use photopic::luminaire::{AngularSpectra, Distribution, Kind, Luminaire, Symmetry, System};
 use photopic::photometry::transfer::Geometry;
 use photopic::spectrum::{Grid, Quantity, Spectrum};
+use predicates::boolean::PredicateBooleanExt;
 use serde_json::Value;
 
 mod common;
@@ -321,6 +322,16 @@ fn the_command_draws_colour_over_angle() {
     let again = result(&run(folder.path(), &["b.xml", "--json"]).code(0));
     let flux = |v: &Value| number(&v["flux"]["photopic"]["luminous_flux_lm"]);
     assert!((flux(&again) / flux(&got) - 1.0).abs() < 1e-8);
+    // With fewer angles in its table the spectra of the others have no place, and it is told.
+    fs::write(folder.path().join("few.toml"), "[lamp]\nevery_vertical = 2\n").expect("written");
+    let mut convert = Command::cargo_bin("photopic").expect("the program");
+    convert.current_dir(folder.path()).args(["lamp", "convert", "a.xml", "-o", "c.xml", "--settings", "few.toml"]);
+    convert.assert().success().stderr(predicates::str::contains("L404").and(predicates::str::contains("by direction")));
+    let file = tm33::read(&fs::read(folder.path().join("c.xml")).expect("written")).expect("read").value;
+    assert!(
+        file.angular_spectra.is_none()
+            && file.distribution.vertical_deg().len() < luminaire.distribution.vertical_deg().len()
+    );
     // A spectrum given goes before the file's own.
     let given = result(&run(folder.path(), &["a.xml", "D65", "--json"]).code(0));
     assert!(given["spectrum"]["source"] == "given" && given.get("directions").is_none());

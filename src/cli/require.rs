@@ -8,15 +8,17 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::brdf::{BandArgs, Loaded, Ready, WAVELENGTHS_NM, load as load_material, prepare};
+use super::capture::{FITTED, Retaken};
 use super::convert::single;
 use super::image::{MeaningArgs, Reading, open as open_image};
 use super::lamp::load as load_lamp;
 use super::notes::Notes;
 use super::output::Sink;
 use super::render::Scene;
-use super::trade::Target;
+use super::trade::{CAPTURE_BINS as BINS, Target};
 use super::writer::csv_row;
 use super::{Failure, Talk};
+use crate::brdf::fit::Options;
 use crate::constants::SecondRadiation;
 use crate::finding::{Finding, Location};
 use crate::illuminant::named;
@@ -32,11 +34,13 @@ use crate::{brdf, luminaire};
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   photopic require data/scenes/office.toml --error 1%
+  photopic require capture.toml --error 5%
   photopic require data/lamps/street.ies --height 8 LED-B3 'lambert + ggx(alpha=0.2, eta=1.5)' cube.exr --json
 
 A rung is needed where all simpler ones are beyond the error; the rung below is told with its measured error.")]
 pub(super) struct RequireArgs {
-    /// Scenes, lamps, spectra (files or names), materials (tables or descriptions), spectral images: told apart by their content.
+    /// Scenes, lamps, spectra (files or names), materials (tables or descriptions), spectral images, manifests of photographs: told apart by
+    /// their content.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<String>,
     /// Error to stay within: per cent, or a fraction.
@@ -79,6 +83,8 @@ enum Kind {
     Material,
     /// A spectral image.
     Image,
+    /// A manifest of photographs of an object, as for `capture brdf`.
+    Capture,
 }
 
 impl Kind {
@@ -89,6 +95,7 @@ impl Kind {
             Self::Spectrum => "spectrum",
             Self::Material => "material",
             Self::Image => "image",
+            Self::Capture => "capture",
         }
     }
 }
@@ -109,7 +116,7 @@ pub(super) fn run(arguments: &RequireArgs, talk: Talk) -> Result<(), Failure> {
     let (mut text, mut table) = (String::new(), csv_row(&report::COLUMNS.map(str::to_owned)));
     let mut missed = false;
     for path in &arguments.files {
-        match answer(path, arguments, most) {
+        match answer(path, arguments, most, talk) {
             Ok(answered) => {
                 let Answered { kind, requirements, inputs, mut findings } = answered;
                 findings.extend(
@@ -144,7 +151,7 @@ pub(super) fn run(arguments: &RequireArgs, talk: Talk) -> Result<(), Failure> {
     }
 }
 
-fn answer(path: &str, arguments: &RequireArgs, most: f64) -> Result<Answered, Failure> {
+fn answer(path: &str, arguments: &RequireArgs, most: f64, talk: Talk) -> Result<Answered, Failure> {
     let kind = match arguments.kind {
         Some(kind) => kind,
         None => kind_of(path)?,
@@ -180,7 +187,8 @@ fn answer(path: &str, arguments: &RequireArgs, most: f64) -> Result<Answered, Fa
             let subject = subject.map_err(Failure::Message)?;
             let Ready { bands, brdf } =
                 prepare(path, &subject.value, &bands, &WAVELENGTHS_NM).map_err(Failure::Message)?;
-            let found = require::material(brdf.as_ref(), &bands, most).map_err(|e| message(&e))?;
+            let found =
+                require::material(brdf.as_ref(), &bands, subject.value.bins(), most).map_err(|e| message(&e))?;
             of(found, std::iter::once(input).chain(spectra).collect(), subject.findings)
         }
         Kind::Image => {
@@ -190,6 +198,21 @@ fn answer(path: &str, arguments: &RequireArgs, most: f64) -> Result<Answered, Fa
             let found = require::image(&image, &settings, most).map_err(|e| message(&e))?;
             let inputs = opened.inputs()?;
             of(found, inputs, opened.findings)
+        }
+        Kind::Capture => {
+            let photos = Retaken::open(path, talk)?;
+            let options = Options { places: Some(FITTED), ..Options::default() };
+            // The finest comes first.
+            let (mut inputs, mut findings) = (None, Vec::new());
+            let found = require::capture((photos.lights, photos.exposures), &options, BINS, most, |choice| {
+                let taken = photos.measure(choice).map_err(|e| e.to_string())?;
+                if inputs.is_none() {
+                    (inputs, findings) = (Some(taken.inputs), taken.findings);
+                }
+                Ok((taken.all, taken.pixel_variance_sd))
+            });
+            let found = found.map_err(|e| message(&e))?;
+            of(found, inputs.unwrap_or_default(), findings)
         }
     }
 }
@@ -218,8 +241,7 @@ fn kind_of(path: &str) -> Result<Kind, Failure> {
     let text = std::str::from_utf8(&bytes).unwrap_or_default();
     let has = |table: &str| text.lines().any(|line| line.trim_start().starts_with(table));
     if ["[[stack]]", "[[ball]]", "[board]", "[camera]"].into_iter().any(has) {
-        let expected = "expected a scene, a lamp, a spectrum, a material or a spectral image";
-        return Err(Failure::Message(format!("{path}: is a manifest of photographs; {expected}")));
+        return Ok(Kind::Capture);
     }
     if ["[[sensor]]", "[[shape]]", "[render]"].into_iter().any(has) {
         return Ok(Kind::Scene);

@@ -13,7 +13,7 @@ use crate::photometry::luminous::{Efficacy, Efficiency};
 use crate::photometry::transfer::{self, Geometry};
 use crate::photometry::{alpha_opic, hazard, luminous, mesopic, photon, risk};
 use crate::spectrum::integrate::{Contract, Rule, RuleError};
-use crate::spectrum::resample::{Extrapolation, Interpolation, ResampleError, resample};
+use crate::spectrum::resample::{Extrapolation, Interpolation, ResampleError, resample, thinned};
 use crate::spectrum::{Grid, Quantity, Sampling, Spectrum};
 use crate::{illuminant, tables};
 
@@ -94,6 +94,9 @@ pub struct Settings {
     pub contract: Contract,
     /// Resampling, if any.
     pub resampling: Option<Resampling>,
+    /// Samples that straight lines between the others need not to be off by more than this share of the largest value are left out
+    /// ([`thinned`]); not where there is a resampling.
+    pub thinning: Option<f64>,
     /// Photopic efficiency function.
     pub efficiency: Efficiency,
     /// K_m and K′_m.
@@ -130,6 +133,7 @@ impl Default for Settings {
         Self {
             contract: Contract::default(),
             resampling: None,
+            thinning: None,
             efficiency: Efficiency::default(),
             efficacy: Efficacy::default(),
             observer: Observer::default(),
@@ -340,7 +344,7 @@ impl Converter {
     pub fn convert(&self, name: &str, quantity: Quantity, spectrum: &Spectrum) -> Result<Checked<Conversion>, Error> {
         let settings = &self.settings;
         settings.geometry.check()?;
-        let resampled = settings.resampling.as_ref().map(|r| r.apply(spectrum)).transpose()?;
+        let resampled = settings.regridded(spectrum)?;
         let spectrum = resampled.as_ref().unwrap_or(spectrum);
         let plan = self.plan(spectrum.grid(), spectrum.sampling())?;
         if let Some(light) = &plan.light {
@@ -357,6 +361,25 @@ impl Converter {
         let mut out = evaluate::evaluate(settings, &plan, name, level.quantity, &scaled)?;
         out.findings.push(Finding::info("P004", format!("scaled by {factor:.6e} to {level}")));
         Ok(out)
+    }
+}
+
+impl Settings {
+    /// The spectrum on the grid on which it is integrated; `None` where that is its own.
+    pub(crate) fn regridded(&self, spectrum: &Spectrum) -> Result<Option<Spectrum>, Error> {
+        match (&self.resampling, self.thinning) {
+            (Some(resampling), _) => resampling.apply(spectrum).map(Some),
+            (None, Some(tolerance)) => Ok(Some(thinned(spectrum, tolerance)?)),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// The same on the grid that another spectrum of the same wavelengths was brought to.
+    pub(crate) fn regridded_like(&self, spectrum: &Spectrum, grid: &Arc<Grid>) -> Result<Spectrum, Error> {
+        match &self.resampling {
+            Some(resampling) => resampling.apply(spectrum),
+            None => Ok(resample(spectrum, Arc::clone(grid), Interpolation::Linear, Extrapolation::Refuse)?),
+        }
     }
 }
 

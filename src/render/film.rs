@@ -243,7 +243,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let stream = |x: usize| stream(self.instrument + streams, y * width + x);
         if tracer.virtual_lights().is_none() {
             for x in columns {
-                let mut sampler = Sampler::new(self.settings.seed, stream(x), 0);
+                let mut sampler = self.settings.sampler(stream(x));
                 for index in 0..number(x) {
                     sampler.start(index);
                     take(x, (stream(x), index), self.sample(tracer, x, y, &mut sampler));
@@ -253,10 +253,10 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         }
         // The sets are those of the whole row, whichever part of it is rendered.
         let numbers: Vec<u64> = (0..width).map(number).collect();
-        let mut samplers: Vec<Sampler> =
-            columns.clone().map(|x| Sampler::new(self.settings.seed, stream(x), 0)).collect();
-        let mut sets =
-            virtual_lights::Sets::new(self.settings.seed, estimate::stream(self.instrument + (streams ^ VIRTUAL), y));
+        let mut samplers: Vec<Sampler> = columns.clone().map(|x| self.settings.sampler(stream(x))).collect();
+        let mut sets = virtual_lights::Sets::new(
+            self.settings.sampler(estimate::stream(self.instrument + (streams ^ VIRTUAL), y)),
+        );
         for index in 0..numbers.iter().copied().max().unwrap_or(0) {
             if let Some(lights) = tracer.virtual_lights() {
                 sets.next(lights, numbers.iter().filter(|n| **n > index).count());

@@ -22,7 +22,6 @@ use super::estimate::{Estimate, Faults, Figure, REPLICATES, Replicate, stream};
 use super::integrator::light::{LightTracer, Visitor};
 use super::measure::Settings;
 use super::ray::Ray;
-use super::sampler::Sampler;
 use super::scene::Scene;
 use super::steps::{StepError, angles};
 use crate::luminaire::{self, Distribution, LampSet, Luminaire, Symmetry, System};
@@ -197,7 +196,7 @@ impl Goniophotometer {
         let scene = run.scene;
         let mut sum = vec![0.0; self.directions()];
         let draws = (run.per_replicate() / self.directions() as u64).max(LEAST_DRAWS);
-        let mut sampler = Sampler::new(run.settings.seed, stream(run.instrument + 1, replicate), 0);
+        let mut sampler = run.settings.sampler(stream(run.instrument + 1, replicate));
         let mut arriving = vec![0.0; scene.bands().len()];
         for draw in 0..draws {
             sampler.start(draw);
@@ -221,7 +220,7 @@ impl Goniophotometer {
     fn packets(&self, run: &Run<'_>, replicate: usize) -> (Vec<f64>, Replicate) {
         let stream = stream(run.instrument, replicate);
         let bands = run.scene.bands().len();
-        let mut sampler = Sampler::new(run.settings.seed, stream, 0);
+        let mut sampler = run.settings.sampler(stream);
         let mut tracer = LightTracer::new(run.scene, &run.settings.heroes);
         let (mut leaving, mut flux) = (Leaving::new(bands), Replicate::new(bands));
         let mut cells = vec![0.0; self.directions()];

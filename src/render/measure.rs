@@ -11,7 +11,7 @@ use super::integrator::light::LightTracer;
 use super::integrator::path::{Limits, PathTracer};
 use super::light::shares::Shares;
 use super::ray::SurfacePoint;
-use super::sampler::Sampler;
+use super::sampler::{Points, Sampler};
 use super::scene::Scene;
 use super::sensor::response::Response;
 use super::shape::Shape;
@@ -44,6 +44,8 @@ pub struct Settings {
     pub seed: u64,
     /// What paths may do.
     pub limits: Limits,
+    /// How the random numbers lie.
+    pub points: Points,
     /// Running sums, up to 1, of the probabilities with which a band is kept where a path must be split, one per band.
     pub heroes: Vec<f64>,
     /// Whether packets from the lights help paths from the camera and from meters
@@ -60,7 +62,13 @@ impl Settings {
     pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
         let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
-        Self { seed, limits, heroes, packets: false, virtual_lights: None }
+        Self { seed, limits, points: Points::default(), heroes, packets: false, virtual_lights: None }
+    }
+
+    /// The random numbers of a stream.
+    #[must_use]
+    pub fn sampler(&self, stream: u64) -> Sampler {
+        Sampler::new(self.seed, stream, 0).with(self.points)
     }
 
     /// The same with bands chosen one half alike, one half in proportion to `weights`: what each adds to the reading that counts. Where
@@ -127,7 +135,7 @@ impl<'a> Board<'a> {
             |(tracer, packets, leaving), (index, replicate)| {
                 let (instrument, meter) = &meters[index / REPLICATES];
                 let stream = stream(*instrument, index % REPLICATES);
-                let mut sampler = Sampler::new(settings.seed, stream, 0);
+                let mut sampler = settings.sampler(stream);
                 let (seen, area_m2) = match &meter.place {
                     Place::Point(point) => (Some(Seen::Point(point, meter.response)), 0.0),
                     Place::Area(shape) => (Some(Seen::Area(shape.as_ref())), shape.area()),
@@ -218,7 +226,7 @@ impl<'a> Beside<'a> {
         let stream = stream(instrument + (1 << 31), replicate);
         Self {
             tracer: PacketTracer::new(scene, settings.limits, &settings.heroes, shares, seen),
-            sampler: Sampler::new(settings.seed, stream, 0),
+            sampler: settings.sampler(stream),
             splats: Splats::default(),
             sum: vec![0.0; scene.bands().len()],
         }

@@ -14,7 +14,6 @@ use super::estimate::{Faults, stream};
 use super::integrator::bidirectional::{PacketTracer, Splats, Target};
 use super::light::shares::Shares;
 use super::measure::Settings;
-use super::sampler::Sampler;
 use super::scene::Scene;
 use super::sensor::camera::Camera;
 
@@ -93,7 +92,7 @@ impl PacketPicture {
                     splats.clear();
                     // Streams of another instrument: none is shared with a pixel.
                     let stream = stream(task.instrument + (1 << 31), number);
-                    let mut sampler = Sampler::new(task.settings.seed, stream, 0);
+                    let mut sampler = task.settings.sampler(stream);
                     for index in first..last {
                         sampler.start(index);
                         tracer.packet(&mut sampler, splats);

@@ -2,9 +2,13 @@
 //!
 //! Sobol' points in four dimensions at a time, Owen-scrambled by hashing and shuffled differently for every key and every group of
 //! four ("padding"): a group is stratified in itself, groups are independent of one another. Late groups, which long paths alone ask
-//! for, are plain random numbers: strata gain nothing there.
+//! for, are plain random numbers: strata gain nothing there. So are all of them where nothing but their independence is wanted
+//! ([`Points::Independent`]), to see what the strata gain.
 //!
 //! Reference: B. Burley, *Practical Hash-based Owen Scrambling*, JCGT 9(4) (2020).
+
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 use crate::math::random::philox;
 
@@ -14,12 +18,36 @@ const EPOCH: u32 = 1 << 16;
 /// Groups that are stratified.
 const STRATIFIED: u32 = 12;
 
+/// How the numbers of a stream lie to one another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Points {
+    /// Sobol' points, Owen-scrambled: evenly.
+    #[default]
+    Sobol,
+    /// At random: the error falls with the root of their number and no faster.
+    Independent,
+}
+
+impl Points {
+    /// Its name in a scene.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Sobol => "sobol",
+            Self::Independent => "independent",
+        }
+    }
+}
+
 /// The numbers of one sample of one pixel or instrument.
 #[derive(Debug, Clone)]
 pub struct Sampler {
     key: u64,
     index: u64,
     group: u32,
+    /// Groups that are stratified.
+    stratified: u32,
 }
 
 impl Sampler {
@@ -28,7 +56,13 @@ impl Sampler {
     pub fn new(seed: u64, stream: u64, index: u64) -> Self {
         let ([s0, s1], [a, b]) = (words(seed), words(stream));
         let [k0, k1, ..] = philox([s0, s1], [a, b, 0x5A3D_71E5, 0]);
-        Self { key: u64::from(k0) | (u64::from(k1) << 32), index, group: 0 }
+        Self { key: u64::from(k0) | (u64::from(k1) << 32), index, group: 0, stratified: STRATIFIED }
+    }
+
+    /// The same stream with points that lie as said.
+    #[must_use]
+    pub fn with(self, points: Points) -> Self {
+        Self { stratified: if points == Points::Sobol { STRATIFIED } else { 0 }, ..self }
     }
 
     /// Starts the sample `index` of the same stream.
@@ -39,6 +73,9 @@ impl Sampler {
 
     /// The next number, uniform in [0, 1), by which alone the samples of a stream are stratified; in place of a group.
     pub fn one(&mut self) -> f64 {
+        if self.stratified == 0 {
+            return self.four()[0];
+        }
         let epoch = self.index / u64::from(EPOCH);
         let group = mixed(self.key ^ mixed((u64::from(self.group) << 32) | epoch));
         let within = words(self.index % u64::from(EPOCH))[0];
@@ -51,7 +88,7 @@ impl Sampler {
     /// The next group of four numbers, each uniform in [0, 1), in which the samples of a stream are stratified together.
     pub fn four(&mut self) -> [f64; 4] {
         let epoch = self.index / u64::from(EPOCH);
-        if self.group >= STRATIFIED {
+        if self.group >= self.stratified {
             let first = mixed(self.key ^ mixed((u64::from(self.group) << 48) ^ self.index));
             let ([a, b], [c, d]) = (words(first), words(mixed(first)));
             self.group += 1;

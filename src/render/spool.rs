@@ -74,6 +74,9 @@ pub struct Task {
     /// Everything is modelled, required or not.
     #[serde(default)]
     pub full: bool,
+    /// The file of settings in place of the scene's, its text; empty without one.
+    #[serde(default)]
+    pub settings: String,
 }
 
 /// What a file holds.
@@ -323,7 +326,14 @@ mod tests {
     fn header() -> Header {
         Header {
             fingerprint: "abc".to_owned(),
-            task: Task { scene: "room.toml".to_owned(), samples: 4, meter_samples: 100, seed: 1, full: false },
+            task: Task {
+                scene: "room.toml".to_owned(),
+                samples: 4,
+                meter_samples: 100,
+                seed: 1,
+                full: false,
+                settings: String::new(),
+            },
             share: Share { index: 1, count: 3 },
             points: 2,
             bands: 2,

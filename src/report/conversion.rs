@@ -128,7 +128,7 @@ pub fn settings(settings: &Settings) -> Value {
 
 fn resampling(settings: &Settings) -> Value {
     settings.resampling.map_or_else(
-        || json!("none"),
+        || settings.thinning.map_or_else(|| json!("none"), |t| json!({"tolerance": t, "interpolation": "linear"})),
         |r| {
             let range = r.range_nm.map_or_else(|| json!("own"), |(a, b)| json!([a, b]));
             json!({"step_nm": r.step_nm, "range_nm": range, "interpolation": r.interpolation})

@@ -63,13 +63,15 @@ pub fn model(built: &Built) -> Value {
         (true, Some(true)) => "in every picture",
         (true, None) => "in every picture that has less noise by them in the same time",
     };
-    let paths = match (analysis.fluorescent.is_empty(), analysis.dispersive.is_empty()) {
-        (true, true) => "every path carries all of them",
-        (true, false) => {
+    let paths = match (limits.single_band, analysis.fluorescent.is_empty(), analysis.dispersive.is_empty()) {
+        (true, true, _) => "every path carries one of them",
+        (true, false, _) => "every path carries one of them, and exchanges it at materials that fluoresce",
+        (_, true, true) => "every path carries all of them",
+        (_, true, false) => {
             "every path carries all of them, and one from where it is refracted by a material that disperses"
         }
-        (false, true) => "every path carries all of them, and exchanges them at materials that fluoresce",
-        (false, false) => {
+        (_, false, true) => "every path carries all of them, and exchanges them at materials that fluoresce",
+        (_, false, false) => {
             "every path carries all of them, one from where it is refracted by a material that disperses, and exchanges them at materials that fluoresce"
         }
     };
@@ -106,6 +108,8 @@ pub fn model(built: &Built) -> Value {
             "paths": paths,
         },
         "max_edges": limits.max_edges,
+        "roulette_from": limits.roulette_from,
+        "sampler": built.settings.points.word(),
         "left_out": left_out,
     })
 }

@@ -281,7 +281,10 @@ fn basis(out: &mut Lines, c: &Conversion, settings: &Settings) {
         Rule::Lines => "sum over lines",
     };
     let resampling = settings.resampling.map_or_else(
-        || "not resampled".to_owned(),
+        || {
+            let thinned = |t: f64| format!("an adaptive step to {} %", significant(100.0 * t, 2));
+            settings.thinning.map_or_else(|| "not resampled".to_owned(), thinned)
+        },
         |r| format!("resampled to {} nm, {:?}", r.step_nm, r.interpolation).to_lowercase(),
     );
     let observer = settings.observer;

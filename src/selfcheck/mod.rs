@@ -1,11 +1,14 @@
 //! The extremes and reference cases in short: what a user runs to see that the tool keeps its digits on his machine. The long versions
 //! are the tests in `tests/extremes` and beside each module.
 //!
-//! Every expectation comes from outside of the code that is checked: a closed form, evaluated with 40 digits, or a standard.
+//! Every expectation comes from outside of the code that is checked: a closed form, evaluated with 40 or 50 digits, or a standard.
 
 mod brdfs;
+mod captures;
+mod colour;
 mod lamps;
 mod light;
+mod photometry;
 mod pictures;
 mod scenes;
 
@@ -45,10 +48,13 @@ impl Check {
 #[must_use]
 pub fn run() -> Vec<Check> {
     let mut out = light::checks();
+    out.extend(photometry::checks());
+    out.extend(colour::checks());
     out.extend(lamps::checks());
     out.extend(brdfs::checks());
     out.extend(pictures::checks());
     out.extend(scenes::checks());
+    out.extend(captures::checks());
     out
 }
 

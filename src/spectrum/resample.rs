@@ -143,9 +143,72 @@ pub fn resample(
     Ok(Spectrum { grid: target, values, sampling: Sampling::Density })
 }
 
+/// The samples that straight lines between them need to stay within `tolerance` times the largest absolute value of all that are left out: an
+/// adaptive step, short where the spectrum bends.
+///
+/// Between the first and the last sample the one farthest from the line (along the axis of values) is kept, if it is farther than that,
+/// and so on on both sides of it: D. Douglas, T. Peucker, *Cartographica* 10(2) (1973) 112. An integral of straight lines with a weighting w
+/// changes by no more than `tolerance` · max |y| · ∫|w|.
+///
+/// # Errors
+/// [`ResampleError::Lines`].
+pub fn thinned(spectrum: &Spectrum, tolerance: f64) -> Result<Spectrum, ResampleError> {
+    if spectrum.sampling() == Sampling::Lines {
+        return Err(ResampleError::Lines);
+    }
+    let (x, y) = (spectrum.wavelengths_nm(), spectrum.values());
+    let allowed = tolerance * y.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let mut kept = vec![false; x.len()];
+    let mut open = vec![(0, x.len() - 1)];
+    while let Some((a, b)) = open.pop() {
+        (kept[a], kept[b]) = (true, true);
+        let slope = (y[b] - y[a]) / (x[b] - x[a]);
+        let off = |i: usize| (y[i] - (y[a] + (x[i] - x[a]) * slope)).abs();
+        let farthest = (a + 1..b).max_by(|i, j| off(*i).total_cmp(&off(*j)));
+        if let Some(farthest) = farthest.filter(|i| off(*i) > allowed) {
+            open.extend([(a, farthest), (farthest, b)]);
+        }
+    }
+    let left = |of: &[f64]| of.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(v, _)| *v).collect();
+    // Ascending as the spectrum's own.
+    let grid = Arc::new(Grid::new(left(x)).map_err(|_| ResampleError::Lines)?);
+    Ok(Spectrum { grid, values: left(y), sampling: Sampling::Density })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_adaptive_step_keeps_corners_and_as_much_of_a_bend_as_is_asked_for() {
+        let of = |f: &dyn Fn(f64) -> f64| {
+            let grid = Grid::uniform(400.0, 1.0, 257).expect("ascending");
+            let values = grid.wavelengths_nm().iter().map(|nm| f(*nm)).collect();
+            Spectrum::density(grid, values).expect("finite")
+        };
+        let kept = |s: &Spectrum, t: f64| thinned(s, t).expect("a density").wavelengths_nm().to_vec();
+        let triangle = of(&|nm| 1.0 - (nm - 500.0).abs() / 200.0);
+        // Exact in binary but for the division: rounding is no bend.
+        assert_eq!(kept(&triangle, 1e-12), [400.0, 500.0, 656.0]);
+        assert_eq!(kept(&of(&|_| 2.0), 0.0), [400.0, 656.0]);
+        // A chord of h nm is a h²/4 off a parabola a λ² in its middle: halved until a h²/4 ≤ t · max, each time in the middle.
+        let parabola = of(&|nm| ((nm - 400.0) / 256.0).powi(2));
+        for (tolerance, h) in [(0.25, 256.0), (0.24, 128.0), (0.06, 64.0), (0.25 / 1024.0, 8.0)] {
+            let expected: Vec<f64> = (0..).map(|i| 400.0 + f64::from(i) * h).take_while(|nm| *nm <= 656.0).collect();
+            assert_eq!(kept(&parabola, tolerance), expected, "{tolerance}");
+        }
+        // Nothing that is left out is farther off than allowed.
+        let bump = of(&|nm| (-((nm - 530.0) / 9.0).powi(2)).exp() - 0.2 * (-((nm - 450.0) / 30.0).powi(2)).exp());
+        let few = thinned(&bump, 0.01).expect("a density");
+        let back =
+            resample(&few, Arc::clone(bump.grid()), Interpolation::Linear, Extrapolation::Refuse).expect("inside");
+        assert!(few.values().len() < 40, "{}", few.values().len());
+        for (a, b) in bump.values().iter().zip(back.values()) {
+            assert!((a - b).abs() <= 0.01 + 1e-15, "{a} {b}");
+        }
+        let lines = Spectrum::lines(Grid::new(vec![435.8, 546.1]).expect("ascending"), vec![1.0, 2.0]).expect("finite");
+        assert_eq!(thinned(&lines, 0.1), Err(ResampleError::Lines));
+    }
 
     fn spectrum(values: &[f64]) -> Spectrum {
         let grid = Grid::uniform(400.0, 10.0, values.len()).expect("ascending");

@@ -99,13 +99,14 @@ pub struct BrdfSweep {
 }
 
 /// Tries a material on its bands, each choice timed `repeats` times; with a basis (of components that are not weighted for their number)
-/// its components too.
+/// its components too. `own_bins` are those of a material that is such a table: more of them know nothing more, and are not offered.
 ///
 /// # Errors
 /// [`BrdfError`].
 pub fn sweep(
     material: &dyn Brdf,
     channels: &[Channel],
+    own_bins: Option<usize>,
     basis: Option<&BasisFile>,
     repeats: usize,
 ) -> Result<BrdfSweep, BrdfError> {
@@ -149,7 +150,11 @@ pub fn sweep(
     let choices: Vec<Choice> = forms.into_iter().map(|(choice, _)| choice).collect();
     let trials = choices.iter().zip(timings).zip(errors).map(|((choice, timing), errors)| Trial {
         settings: choice.words(),
-        offered: matches!(choice, Choice::Bins(_) | Choice::Model(_)),
+        offered: match choice {
+            Choice::Bins(resolution) => own_bins.is_none_or(|own| resolution.bins() <= own),
+            Choice::Model(_) => true,
+            Choice::Own | Choice::Components(_) => false,
+        },
         timing,
         errors: errors.map(|e| Some(e).filter(|e| e.is_finite()).map(Estimate::exact)).to_vec(),
     });
@@ -267,7 +272,7 @@ mod tests {
 
     fn of(words: &str) -> BrdfSweep {
         let material = words.parse::<Material>().expect("a material").prepare(Bands::Wavelengths(&[550.0]));
-        sweep(material.expect("prepared").as_ref(), &[Channel::Wavelength(550.0)], None, 1).expect("a sweep")
+        sweep(material.expect("prepared").as_ref(), &[Channel::Wavelength(550.0)], None, None, 1).expect("a sweep")
     }
 
     fn error(s: &BrdfSweep, figure: usize, is: impl Fn(&Choice) -> bool) -> f64 {
@@ -308,10 +313,24 @@ mod tests {
     }
 
     #[test]
+    fn no_more_bins_are_offered_than_a_table_has() {
+        let material = "ggx(alpha=0.3, f0=0.5)".parse::<Material>().expect("a material");
+        let material = material.prepare(Bands::Wavelengths(&[550.0])).expect("prepared");
+        let [theta_h, theta_d, phi_d] = BINS[3];
+        let own = Resolution { theta_h, theta_d, phi_d }.bins();
+        let s = sweep(material.as_ref(), &[Channel::Wavelength(550.0)], Some(own), None, 1).expect("a sweep");
+        for (choice, trial) in s.choices.iter().zip(&s.sweep.trials) {
+            if let Choice::Bins(r) = choice {
+                assert_eq!(trial.offered, [BINS[3], BINS[4]].contains(&[r.theta_h, r.theta_d, r.phi_d]), "{choice:?}");
+            }
+        }
+    }
+
+    #[test]
     fn mirrors_are_refused() {
         let mirror = "mirror(reflectance=0.9)".parse::<Material>().expect("a material");
         let mirror = mirror.prepare(Bands::Wavelengths(&[550.0])).expect("prepared");
-        let refused = sweep(mirror.as_ref(), &[Channel::Wavelength(550.0)], None, 1);
+        let refused = sweep(mirror.as_ref(), &[Channel::Wavelength(550.0)], None, None, 1);
         assert_eq!(refused.err(), Some(BrdfError::Dirac));
     }
 }

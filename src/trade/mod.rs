@@ -56,7 +56,7 @@ impl Figure {
 }
 
 /// An error with its interval at 95 % confidence. Of a method with seeds, `error` is the root of the mean square over them, and `high` what
-/// another run stays below in 95 % of all cases.
+/// 95 % of other runs stay below, with a confidence that holds for all settings of a sweep at once.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
     /// The best estimate.

@@ -2,7 +2,7 @@
 //!
 //! | knob | values |
 //! |---|---|
-//! | `step` | the spectrum's own samples, or resampled to 1, 2, 5, 10 and 20 nm |
+//! | `step` | the spectrum's own samples, or resampled to 1, 2, 5, 10 and 20 nm; adaptive: those that straight lines need to stay within 1, 0.1 and 0.01 % of the peak |
 //! | `interpolation` | of the resampling: linear, Sprague, cubic, monotone cubic; values that come out alike are tried once |
 //! | `rule` | CIE summation, trapezoid, exact integral of straight lines |
 //! | `range` | all, 360–830, 380–780, 380–770 nm, where that cuts something off |
@@ -17,11 +17,13 @@ use super::timing::interleaved;
 use super::{Estimate, Figure, Sweep, Trial};
 use crate::conversion::{Conversion, Converter, Error, Groups, Resampling, Settings};
 use crate::spectrum::integrate::{Contract, Rule};
-use crate::spectrum::resample::{Extrapolation, Interpolation};
+use crate::spectrum::resample::{Extrapolation, Interpolation, thinned};
 use crate::spectrum::{Quantity, Sampling, Spectrum};
 
 /// Steps that are tried, nm.
 const STEPS_NM: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 20.0];
+/// Tolerances of adaptive steps that are tried.
+const THINNINGS: [f64; 3] = [0.01, 1e-3, 1e-4];
 /// Ranges that are tried, nm.
 const RANGES_NM: [(f64, f64); 3] = [(360.0, 830.0), (380.0, 780.0), (380.0, 770.0)];
 /// The resampling of the spline goes to this part of the step.
@@ -48,6 +50,8 @@ pub static FIGURES: [Figure; COUNT] = [
 pub struct Choice {
     /// Resampling, if any.
     pub resampling: Option<Resampling>,
+    /// Tolerance of an adaptive step, if any.
+    pub thinning: Option<f64>,
     /// Rule and range.
     pub contract: Contract,
     /// Samples rounded to single precision.
@@ -57,15 +61,19 @@ pub struct Choice {
 impl Choice {
     fn converter(&self, base: &Settings) -> Converter {
         let groups = Groups { hazard: false, rgb: false, shape: false, ..Groups::ALL };
-        let (resampling, contract) = (self.resampling, self.contract);
-        Converter::new(Settings { resampling, contract, groups, level: None, ..base.clone() })
+        let Self { resampling, thinning, contract, .. } = *self;
+        Converter::new(Settings { resampling, thinning, contract, groups, level: None, ..base.clone() })
     }
 
     fn words(&self) -> Vec<String> {
         let number = |v: f64| format!("{v} nm");
         let word = |r: Rule| r.word().to_owned();
         vec![
-            self.resampling.map_or_else(|| "own".to_owned(), |r| number(r.step_nm)),
+            match (self.resampling, self.thinning) {
+                (Some(r), _) => number(r.step_nm),
+                (_, Some(tolerance)) => format!("adaptive to {tolerance}"),
+                _ => "own".to_owned(),
+            },
             self.resampling.map_or_else(|| "none".to_owned(), |r| r.interpolation.word().to_owned()),
             self.contract.rule.map_or_else(|| "lines".to_owned(), word),
             self.contract.range_nm.map_or_else(|| "all".to_owned(), |(low, high)| format!("{low}-{high} nm")),
@@ -92,7 +100,7 @@ pub fn sweep(spectrum: &Spectrum, base: &Settings, defined: bool, repeats: usize
     let is_lines = spectrum.sampling() == Sampling::Lines;
     let rule = if is_lines { Rule::Lines } else { Rule::Exact };
     let whole = Contract { rule: Some(rule), range_nm: None };
-    let best = Choice { resampling: None, contract: whole, single: false };
+    let best = Choice { resampling: None, thinning: None, contract: whole, single: false };
     let reference = figures(&best.converter(base), spectrum)?;
     let reference_errors = if is_lines || defined {
         reference.map(|f| f.map(|_| 0.0)).to_vec()
@@ -154,10 +162,11 @@ fn choices(spectrum: &Spectrum) -> Vec<Choice> {
     let mut out = Vec::new();
     if spectrum.sampling() == Sampling::Lines {
         let line = |range_nm| Contract { rule: Some(Rule::Lines), range_nm };
-        return ranges.into_iter().map(|r| Choice { resampling: None, contract: line(r), single: false }).collect();
+        let of = |r| Choice { resampling: None, thinning: None, contract: line(r), single: false };
+        return ranges.into_iter().map(of).collect();
     }
     let own_step = spectrum.grid().step_nm();
-    let mut grids: Vec<Option<Resampling>> = vec![None];
+    let mut grids: Vec<(Option<Resampling>, Option<f64>)> = vec![(None, None)];
     for step_nm in STEPS_NM.into_iter().filter(|s| Some(*s) != own_step && 2.0 * s < last - first) {
         let mut seen: Vec<Spectrum> = Vec::new();
         for interpolation in Interpolation::ALL {
@@ -165,17 +174,26 @@ fn choices(spectrum: &Spectrum) -> Vec<Choice> {
             let Ok(resampled) = wanted.apply(spectrum) else { continue };
             if !seen.contains(&resampled) {
                 seen.push(resampled);
-                grids.push(Some(wanted));
+                grids.push((Some(wanted), None));
             }
         }
     }
-    for resampling in grids {
+    let mut samples = spectrum.values().len();
+    for tolerance in THINNINGS.into_iter().rev() {
+        let kept = thinned(spectrum, tolerance).map_or(samples, |s| s.values().len());
+        if kept < samples {
+            samples = kept;
+            grids.push((None, Some(tolerance)));
+        }
+    }
+    for (resampling, thinning) in grids {
         for rule in [Rule::Summation, Rule::Trapezoid, Rule::Exact] {
             for range_nm in ranges.iter().copied() {
                 let contract = Contract { rule: Some(rule), range_nm };
-                out.push(Choice { resampling, contract, single: false });
-                if resampling.is_none() {
-                    out.push(Choice { resampling, contract, single: true });
+                let choice = Choice { resampling, thinning, contract, single: false };
+                out.push(choice);
+                if resampling.is_none() && thinning.is_none() {
+                    out.push(Choice { single: true, ..choice });
                 }
             }
         }
@@ -279,6 +297,7 @@ mod tests {
         let best = s.choices.iter().position(|c| {
             *c == Choice {
                 resampling: None,
+                thinning: None,
                 contract: Contract { rule: Some(Rule::Exact), range_nm: None },
                 single: false,
             }
@@ -293,6 +312,29 @@ mod tests {
         for (choice, trial) in single.filter(|(c, _)| c.contract.rule == Some(Rule::Exact)) {
             let error = trial.errors[1].expect("photopic").error;
             assert!(error <= f64::from(f32::EPSILON) / 2.0 && !trial.offered, "{choice:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn an_adaptive_step_errs_by_less_than_its_share_of_the_peak() {
+        let grid = Grid::uniform(380.0, 1.0, 401).expect("a grid");
+        let bump = |nm: f64, at: f64, width: f64| (-((nm - at) / width).powi(2)).exp();
+        let values =
+            grid.wavelengths_nm().iter().map(|nm| bump(*nm, 450.0, 12.0) + 0.6 * bump(*nm, 580.0, 60.0)).collect();
+        let spectrum = Spectrum::density(grid, values).expect("a spectrum");
+        let s = sweep(&spectrum, &Settings::default(), true, 1).expect("a sweep");
+        // |Δ∫| ≤ tolerance · peak · 400 nm, over ∫ = √π (12 + 0.6 · 60) nm; the peak is at most 1 + 0.6 exp(−(130/60)²).
+        let integral = std::f64::consts::PI.sqrt() * (12.0 + 36.0);
+        let tried: Vec<(f64, f64)> = (s.choices.iter().zip(&s.sweep.trials))
+            .filter(|(c, _)| c.contract == Contract { rule: Some(Rule::Exact), range_nm: None })
+            .filter_map(|(c, t)| Some((c.thinning?, t.errors[0]?.error)))
+            .collect();
+        assert_eq!(tried.iter().map(|t| t.0).collect::<Vec<_>>(), [1e-4, 1e-3, 0.01]);
+        for (tolerance, error) in tried {
+            assert!(
+                error <= tolerance * (1.0 + 0.6 * (-4.69_f64).exp()) * 400.0 / integral && error > 0.0,
+                "{tolerance}: {error}"
+            );
         }
     }
 

@@ -168,7 +168,7 @@ pub(super) struct Figures<'a> {
 impl<'a> Figures<'a> {
     pub(super) fn new(converter: &'a Converter, quantity: Quantity, spectrum: &Spectrum) -> Result<Self, Error> {
         let settings = converter.settings();
-        let resampled = settings.resampling.as_ref().map(|r| r.apply(spectrum)).transpose()?;
+        let resampled = settings.regridded(spectrum)?;
         let used = resampled.as_ref().unwrap_or(spectrum);
         let mut out = Self {
             settings,
@@ -193,11 +193,11 @@ impl<'a> Figures<'a> {
     /// Calls `put` with every figure of `list`, in its order, and its value, NaN where it is not defined.
     pub(super) fn each(&self, measured: &[f64], scratch: &mut Scratch, mut put: impl FnMut(Measurand, f64)) {
         let Scratch { scaled, reflected, reference } = scratch;
-        let values = match (&self.measured, &self.settings.resampling) {
-            (Some(spectrum), Some(resampling)) => {
+        let values = match &self.measured {
+            Some(spectrum) => {
                 let mut values = measured.iter();
                 let resampled = (spectrum.map(|_, _| values.next().copied().unwrap_or(f64::NAN)).ok())
-                    .and_then(|s| resampling.apply(&s).ok());
+                    .and_then(|s| self.settings.regridded_like(&s, &self.plan.grid).ok());
                 scaled.clear();
                 match resampled {
                     Some(s) => scaled.extend_from_slice(s.values()),
@@ -205,7 +205,7 @@ impl<'a> Figures<'a> {
                 }
                 &*scaled
             }
-            _ => measured,
+            None => measured,
         };
         let values = match &self.plan.light {
             Some(light) => {

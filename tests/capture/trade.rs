@@ -93,6 +93,50 @@ fn errors_are_those_between_two_runs_and_the_recommended_setting_is_taken() {
     assert!(code == 0 && recommended["lights"] == "4" && recommended["every"] == "1", "{recommended}");
 }
 
+/// A white sphere of reflectance 0.5 is carried by a Lambertian model, one band, few photographs; what is told is what `trade` measures.
+#[test]
+fn photographs_require_what_the_trade_confirms() {
+    let folder = spheres(&[LIGHTS[0], LIGHTS[1], LIGHTS[2], [0.9, -0.6, -0.2]]);
+    let folder = folder.path();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::cargo_bin("photopic").expect("the program");
+        let output = command.current_dir(folder).args(arguments).output().expect("it runs");
+        let code = output.status.code().expect("an exit code");
+        assert!(code < 2, "{}", String::from_utf8_lossy(&output.stderr));
+        (code, json(&String::from_utf8(output.stdout).expect("UTF-8"))["results"][0].clone())
+    };
+    let (code, result) = run(&["require", "capture.toml", "--error", "1%", "--json"]);
+    assert!(code == 0 && result["kind"] == "capture", "{result}");
+    let question = |name: &str| {
+        let all = result["requirements"].as_array().expect("requirements");
+        all.iter().find(|r| r["question"] == name).unwrap_or_else(|| panic!("{name} in {result}")).clone()
+    };
+    for (name, model) in
+        [("bands", "one band for all"), ("form", "the model lambert"), ("azimuth", "isotropic (three angles)")]
+    {
+        let found = question(name);
+        assert!(found["needed"]["model"] == model && found["simpler"].is_null(), "{found}");
+    }
+    // The same numbers by `trade`, for every rung.
+    let (_, trade) = run(&["trade", "capture", "capture.toml", "--repeats", "1", "--json"]);
+    let bound = |lights: &str, every: &str| {
+        let trials = trade["trials"].as_array().expect("trials");
+        let is = |t: &&Value| t["settings"]["lights"] == lights && t["settings"]["every"] == every;
+        trials.iter().find(is).expect("it was tried")["error_bound"].clone()
+    };
+    for (name, settings) in
+        [("photographs", [("1", "1"), ("2", "1"), ("4", "1")]), ("pixels", [("4", "8"), ("4", "4"), ("4", "2")])]
+    {
+        let found = question(name);
+        for (rung, (lights, every)) in found["rungs"].as_array().expect("rungs").iter().zip(settings) {
+            assert_eq!(rung["error"], bound(lights, every), "{name}: {rung}");
+        }
+        // One light of four loses more than half of the bins, every 8th pixel as well; all of them carry it.
+        assert!(found["needed"]["error"].as_f64().is_some_and(|e| e <= 0.01), "{found}");
+        assert!(found["simpler"]["error"].as_f64().is_none_or(|e| e > 0.01), "{found}");
+    }
+}
+
 #[test]
 fn what_cannot_be_had_is_said() {
     let folder = spheres(&LIGHTS[..1]);

@@ -46,7 +46,10 @@ fn errors_are_those_between_two_conversions_and_the_recommended_one_keeps_its_wo
         let of = |knob: &str| trial["settings"][knob].as_str().expect("a word").trim_end_matches(" nm").to_owned();
         let (step, rule, range, interpolation) = (of("step"), of("rule"), of("range"), of("interpolation"));
         let mut options = vec!["--rule", rule.as_str()];
-        if step != "own" {
+        let thin = step.strip_prefix("adaptive to ");
+        if let Some(tolerance) = thin {
+            options.extend(["--thin", tolerance]);
+        } else if step != "own" {
             options.extend(["--resample", step.as_str(), "--interpolation", interpolation.as_str()]);
         }
         if range != "all" {
@@ -123,7 +126,10 @@ fn the_self_check_passes_and_has_a_row_per_case() {
     let document = json(&document);
     let cases = document["results"].as_array().expect("cases");
     let areas: std::collections::BTreeSet<&str> = cases.iter().filter_map(|c| c["area"].as_str()).collect();
-    assert_eq!(areas.into_iter().collect::<Vec<_>>(), ["lamps", "materials", "pictures", "scenes", "spectra"]);
+    assert_eq!(
+        areas.into_iter().collect::<Vec<_>>(),
+        ["captures", "colour", "lamps", "materials", "photometry", "pictures", "scenes", "spectra"]
+    );
     assert!(cases.iter().all(|c| c["passes"] == true && c["error"].as_f64() <= c["allowed"].as_f64()), "{document}");
     let (code, table, _) = run(&["selfcheck", "--csv"]);
     assert_eq!((code, table.lines().count()), (0, cases.len() + 1));

@@ -1,15 +1,15 @@
-//! The ends of what a spectrum can be: lines of no width, blackbodies of 1 K and of 10⁹ K, values near the ends of a double,
-//! nothing at all, noise, half a spectrum. Every expectation is derived: from the SI, from a standard's printed digits, or from
-//! a closed form beside the assertion.
+//! The ends of what each module can meet: the smallest, the largest, the emptiest, the steepest, the most degenerate; a file per module. Every
+//! expectation is derived: from the SI, from a standard's printed digits, from a closed form beside the assertion, or from one that was
+//! evaluated with 50 digits (mpmath).
 
-mod blackbodies;
-mod degenerate;
-mod lines;
-mod noise;
-mod range;
-mod refused;
-mod scale;
-mod step;
+mod brdfs;
+mod capture;
+mod colorimetry;
+mod images;
+mod luminaires;
+mod photometry;
+mod renderer;
+mod spectra;
 
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ pub fn has(findings: &[Finding], code: &str) -> bool {
     findings.iter().any(|f| f.code == code)
 }
 
-/// Nulls that one test each asks about, so that it fails alone: `unsaid` in `degenerate.rs` and `scale.rs`, and the step of an
+/// Nulls that one test each asks about, so that it fails alone: `unsaid` in `spectra/degenerate.rs` and `spectra/scale.rs`, and the step of an
 /// irregular grid in `tests/cli.rs`.
 const ASKED_ELSEWHERE: [&str; 6] =
     [".der", ".efficacy_w_per_lm", "umol_per_j", "par_umol_per_par_j", "integration.step_nm", "photon.total_photons"];

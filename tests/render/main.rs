@@ -11,6 +11,7 @@ mod files;
 mod honest;
 mod instruments;
 mod keys;
+mod knobs;
 mod lights;
 mod meshes;
 mod meters_from_lights;

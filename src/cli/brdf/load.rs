@@ -67,6 +67,19 @@ pub(in crate::cli) enum Subject {
     Measured(Box<format::File>),
 }
 
+impl Subject {
+    /// The bins of a measured table of half angles.
+    pub(in crate::cli) fn bins(&self) -> Option<usize> {
+        match self {
+            Self::Measured(file) => match &file.table {
+                Table::HalfAngle(table) => Some(table.resolution().bins()),
+                _ => None,
+            },
+            Self::Described(_) => None,
+        }
+    }
+}
+
 /// A material read.
 pub(in crate::cli) struct Loaded {
     /// What to call it: the file and the name in it, or the description.

@@ -135,6 +135,10 @@ pub(super) struct Integration {
     /// What --resample puts beyond the ends of the samples.
     #[arg(long, value_enum, default_value = "refuse", requires = "resample")]
     pub extrapolation: ExtrapolationArg,
+    /// Leave out the samples that straight lines between the others miss by no more than this share of the largest value, per cent or a
+    /// fraction: an adaptive step.
+    #[arg(long, value_name = "ERROR", value_parser = measures::share, conflicts_with = "resample")]
+    pub thin: Option<f64>,
     /// A file with rule, range, step and interpolation, as `trade spectrum --settings` writes it; options given here go before it.
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
@@ -434,6 +438,7 @@ impl ConvertArgs {
                     ExtrapolationArg::Linear => Extrapolation::Linear,
                 },
             }),
+            thinning: i.thin,
             efficiency: i.efficiency,
             efficacy: Efficacy { k_m: i.k_m, k_m_scotopic: i.k_m_scotopic },
             observer: c.observer,

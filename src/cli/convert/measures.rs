@@ -36,6 +36,17 @@ pub(in crate::cli) fn length(text: &str) -> Result<f64, String> {
     measure(text, "length", "2m, 30cm or 10ft", metres)
 }
 
+/// A share below 1, per cent or a fraction.
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    let share = split(text).and_then(|(number, unit)| match unit {
+        "%" => Some(number / 100.0),
+        "" => Some(number),
+        _ => None,
+    });
+    let share = share.filter(|s| (0.0..1.0).contains(s));
+    share.ok_or_else(|| format!("`{text}` is no share; expected 0.1% or a fraction from 0 to below 1"))
+}
+
 /// An area in m².
 pub(super) fn area(text: &str) -> Result<f64, String> {
     measure(text, "area", "1cm2, 0.5m2 or 1ft2", |unit| {

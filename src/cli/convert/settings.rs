@@ -22,6 +22,7 @@ struct Section {
     range_nm: Option<[f64; 2]>,
     resample_nm: Option<f64>,
     interpolation: Option<InterpolationArg>,
+    thin: Option<f64>,
 }
 
 /// Takes what the file says where the command line says nothing.
@@ -31,7 +32,7 @@ pub(super) fn apply(path: &Path, integration: &mut Integration) -> Result<(), Fa
         .map_err(|e| Failure::Message(format!("{place}: cannot be read: {e}; expected settings (TOML)")))?;
     let at = |m: Mistake| Failure::Message(format!("{place}:{m}"));
     let File { convert } = mistake::parse(&text).map_err(at)?;
-    let Section { rule, range_nm, resample_nm, interpolation } = convert.get_ref();
+    let Section { rule, range_nm, resample_nm, interpolation, thin } = convert.get_ref();
     let wrong = |message: &str| Err(at(Mistake::at(&text, &convert.span(), message)));
     if range_nm.is_some_and(|[low, high]| !(0.0 < low && low < high)) {
         return wrong("`range_nm` is no range; expected two positive wavelengths, the shorter first");
@@ -42,11 +43,18 @@ pub(super) fn apply(path: &Path, integration: &mut Integration) -> Result<(), Fa
     if interpolation.is_some() && resample_nm.is_none() {
         return wrong("`interpolation` without `resample_nm`; expected both or none");
     }
+    if resample_nm.is_some() && thin.is_some() {
+        return wrong("`resample_nm` and `thin`; expected one or the other");
+    }
+    if thin.is_some_and(|share| !(0.0..1.0).contains(&share)) {
+        return wrong("`thin` is no share; expected a number from 0 to below 1");
+    }
     integration.rule = integration.rule.or(*rule);
     integration.range = integration.range.or(range_nm.map(|[low, high]| (low, high)));
-    if let (None, Some(step_nm)) = (integration.resample, resample_nm) {
-        integration.resample = Some(*step_nm);
+    if integration.resample.is_none() && integration.thin.is_none() {
+        integration.resample = *resample_nm;
         integration.interpolation = interpolation.unwrap_or(integration.interpolation);
+        integration.thin = *thin;
     }
     Ok(())
 }

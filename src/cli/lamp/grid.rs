@@ -16,7 +16,7 @@ use super::settings;
 use crate::cli::notes::Notes;
 use crate::cli::output::{self, Sink};
 use crate::cli::{Failure, Talk};
-use crate::finding::{Finding, Location};
+use crate::finding::{Checked, Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::grid::{
     Error, Illuminance, Placed, Plane, PointsAt, Receiver, Settings, has_opening, illuminance, standard_step_m,
@@ -203,8 +203,9 @@ pub(super) fn grid(arguments: &GridArgs, talk: Talk) -> Result<(), Failure> {
         let mut file = loaded.file.map_err(|(message, _)| Failure::Message(message))?;
         findings.extend(file.findings);
         interpolate(&mut file.value, interpolation);
-        given.thin(&mut file.value.luminaire)?;
-        lamps.push(file.value.luminaire);
+        let Checked { value, findings: noted } = given.thin(&file.value.luminaire)?;
+        findings.extend(noted.into_iter().map(|f| f.at(Location::default().in_file(path))));
+        lamps.push(value);
         if !lamps.last().is_some_and(has_opening) {
             let message = "the luminous opening is not known: the luminaire is taken as a point at any distance";
             findings.push(Finding::info("L601", message).at(Location::default().in_file(path)));

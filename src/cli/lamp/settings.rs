@@ -7,8 +7,9 @@ use serde::Deserialize;
 
 use super::interpolation::Choice;
 use crate::cli::Failure;
+use crate::finding::Checked;
 use crate::luminaire::Luminaire;
-use crate::luminaire::transform::thinned;
+use crate::luminaire::transform::fewer_angles;
 use crate::mistake::{self, Mistake};
 
 /// What the file says.
@@ -46,13 +47,8 @@ impl Settings {
     }
 
     /// Leaves out the angles that the file does not want.
-    pub(super) fn thin(&self, luminaire: &mut Luminaire) -> Result<(), Failure> {
+    pub(super) fn thin(&self, luminaire: &Luminaire) -> Result<Checked<Luminaire>, Failure> {
         let every = [self.every_horizontal, self.every_vertical].map(|n| n.unwrap_or(1));
-        if every != [1; 2] {
-            let table = thinned(&luminaire.distribution, every).map_err(|e| Failure::Message(e.to_string()))?;
-            luminaire.distribution = table;
-            luminaire.angular_spectra = None;
-        }
-        Ok(())
+        fewer_angles(luminaire, every).map_err(|e| Failure::Message(e.to_string()))
     }
 }

@@ -152,8 +152,7 @@ impl TransformArgs {
         let interpolation = self.interpolation.or(settings.interpolation);
         let mut findings = Vec::new();
         interpolate(&mut file, interpolation);
-        let mut lamp = file.luminaire;
-        settings.thin(&mut lamp)?;
+        let mut lamp = noted(settings.thin(&file.luminaire)?, &mut findings);
         if !self.merge.is_empty() {
             let mut others = Vec::with_capacity(self.merge.len());
             for other in &self.merge {

@@ -63,7 +63,7 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "EXTENT", value_parser = model)]
     model: Option<Model>,
     /// A file with `[render]` keys in place of the scene's, as `trade render --settings` writes it; options given here go before it.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["preview", "checkpoint", "resume", "shard"])]
+    #[arg(long, value_name = "FILE", conflicts_with = "preview")]
     settings: Option<PathBuf>,
     /// Names all random numbers, instead of the scene's.
     #[arg(long, value_name = "NUMBER")]
@@ -239,7 +239,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         meter_samples: Some(task.meter_samples),
         seed: Some(task.seed),
         model: Some(if task.full { Model::Full } else { Model::Minimal }),
-        settings: Settings::default(),
+        settings: Settings::parse(&format!("{}: settings", a.shards[0]), task.settings.clone())?,
     };
     let work = Work::new(&task.scene, &overrides)?;
     if work.fingerprint != header.fingerprint {

@@ -7,17 +7,39 @@ use serde::Deserialize;
 
 use crate::cli::Failure;
 use crate::mistake::{self, Mistake};
-use crate::render::description::{Model, Render, Solver};
+use crate::render::description::{Carried, Model, Render, Solver};
+use crate::render::sampler::Points;
 
 /// What stands in place of the scene's.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
     meter_samples: Option<u64>,
     solver: Option<Solver>,
-    max_edges: Option<u32>,
+    max_edges: Option<Edges>,
+    roulette_from: Option<u32>,
+    sampler: Option<Points>,
+    wavelengths_per_path: Option<Carried>,
+    wavelength_step_nm: Option<f64>,
     wavelength_tolerance: Option<f64>,
     model: Option<Model>,
+    /// The file, for those who join the parts of a render.
+    #[serde(skip)]
+    pub text: String,
+}
+
+/// The longest path.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "found something else; expected a number of edges, or \"any\"")]
+enum Edges {
+    Most(u32),
+    Any(Any),
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Any {
+    Any,
 }
 
 #[derive(Debug, Deserialize)]
@@ -29,13 +51,25 @@ struct File {
 impl Settings {
     /// Reads a file.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let place = path.display();
+        let place = path.display().to_string();
         let text = fs::read_to_string(path)
             .map_err(|e| Failure::Message(format!("{place}: cannot be read: {e}; expected settings (TOML)")))?;
+        if text.trim().is_empty() {
+            return Err(Failure::Message(format!("{place}:1:1: found nothing; expected a table [render]")));
+        }
+        Self::parse(&place, text)
+    }
+
+    /// Of the text of a file that is at `place`; nothing stands in place of anything where it is empty.
+    pub(super) fn parse(place: &str, text: String) -> Result<Self, Failure> {
+        if text.is_empty() {
+            return Ok(Self::default());
+        }
         let at = |m: Mistake| Failure::Message(format!("{place}:{m}"));
         let file: File = mistake::parse(&text).map_err(at)?;
-        let settings = *file.render.get_ref();
-        let wrong = |message: &str| Err(at(Mistake::at(&text, &file.render.span(), message)));
+        let span = file.render.span();
+        let settings = Self { text, ..file.render.into_inner() };
+        let wrong = |message: &str| Err(at(Mistake::at(&settings.text, &span, message)));
         if settings.meter_samples == Some(0) {
             return wrong("`meter_samples` is 0; expected at least 1");
         }
@@ -49,8 +83,18 @@ impl Settings {
     pub(super) fn apply(&self, render: &mut Render) {
         render.meter_samples = self.meter_samples.unwrap_or(render.meter_samples);
         render.solver = self.solver.unwrap_or(render.solver);
-        render.max_edges = self.max_edges.or(render.max_edges);
+        render.max_edges = match self.max_edges {
+            None => render.max_edges,
+            Some(Edges::Most(edges)) => Some(edges),
+            Some(Edges::Any(Any::Any)) => None,
+        };
+        render.roulette_from = self.roulette_from.unwrap_or(render.roulette_from);
+        render.sampler = self.sampler.unwrap_or(render.sampler);
+        render.wavelengths_per_path = self.wavelengths_per_path.unwrap_or(render.wavelengths_per_path);
         render.wavelength_tolerance = self.wavelength_tolerance.unwrap_or(render.wavelength_tolerance);
+        // A tolerance is asked for instead of a step.
+        let step = render.wavelength_step_nm.filter(|_| self.wavelength_tolerance.is_none());
+        render.wavelength_step_nm = self.wavelength_step_nm.or(step);
         render.model = self.model.unwrap_or(render.model);
     }
 }

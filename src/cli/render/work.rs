@@ -48,6 +48,7 @@ pub(super) struct Work {
     pub built: Built,
     pub(super) description: Description,
     inputs: Vec<Input>,
+    settings: String,
     /// Paths of the inputs.
     pub read: Vec<String>,
     /// A checksum of everything that the results depend on.
@@ -97,9 +98,7 @@ impl Work {
         let mut sum = Sha256::new();
         sum.update(env!("CARGO_PKG_VERSION"));
         inputs.iter().filter_map(|i| i.sha256.as_ref()).for_each(|s| sum.update(s));
-        let render = &description.render;
-        let full = u64::from(render.model == Model::Full);
-        [render.samples, render.meter_samples, render.seed, full].into_iter().for_each(|n| sum.update(n.to_le_bytes()));
+        sum.update(format!("{:?}", description.render));
         let fingerprint = sum.finalize().iter().map(|b| format!("{b:02x}")).collect();
         let (mut meters, mut first): (Vec<(u64, Meter)>, Vec<usize>) = (Vec::new(), Vec::new());
         for (number, instrument) in (0_u64..).zip(&built.instruments) {
@@ -112,7 +111,8 @@ impl Work {
             meters.extend((0_u64..).zip(own).map(|(point, m)| ((number << 32) + point, m.clone())));
         }
         first.push(meters.len());
-        Ok(Self { path: path.to_owned(), built, description, inputs, read, fingerprint, meters, first, begun })
+        let (path, settings) = (path.to_owned(), overrides.settings.text.clone());
+        Ok(Self { path, built, description, inputs, settings, read, fingerprint, meters, first, begun })
     }
 
     /// The header of the state of a share.
@@ -124,6 +124,7 @@ impl Work {
             meter_samples: render.meter_samples,
             seed: render.seed,
             full: render.model == Model::Full,
+            settings: self.settings.clone(),
         };
         state::header(&self.built, self.meters.len(), &self.fingerprint, share, &task)
     }

@@ -44,8 +44,14 @@ pub(super) fn trade(arguments: &BrdfArgs, talk: Talk) -> Result<(), Failure> {
     let Ready { bands, brdf } =
         prepare(path, &subject.value, &arguments.bands, &WAVELENGTHS_NM).map_err(Failure::Message)?;
     let basis = arguments.basis.as_deref().map(open_basis).transpose()?;
-    let found = sweep(brdf.as_ref(), &bands, basis.as_ref().map(|(basis, _)| basis), asked.repeats as usize)
-        .map_err(|e| Failure::Message(format!("{path}: {e}")))?;
+    let found = sweep(
+        brdf.as_ref(),
+        &bands,
+        subject.value.bins(),
+        basis.as_ref().map(|(basis, _)| basis),
+        asked.repeats as usize,
+    )
+    .map_err(|e| Failure::Message(format!("{path}: {e}")))?;
     let mut inputs = vec![input];
     inputs.extend(spectra);
     inputs.extend(arguments.basis.iter().zip(&basis).map(|(path, (_, checksum))| Input {

@@ -15,7 +15,7 @@ use crate::finding::{Finding, Location};
 use crate::trade::capture::{CaptureSweep, choices, sweep};
 
 /// Bins in which settings are compared: coarse enough that few pixels still fill them.
-const RESOLUTION: Resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 36 };
+pub(in crate::cli) const BINS: Resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 36 };
 
 /// A manifest, and the error asked for.
 #[derive(Debug, Args)]
@@ -48,7 +48,7 @@ pub(super) fn trade(arguments: &CaptureArgs, talk: Talk) -> Result<(), Failure> 
     asked.check()?;
     let photos = Retaken::open(path, talk)?;
     let options = Options { places: Some(FITTED), ..Options::default() };
-    let resolution = arguments.resolution.map_or(RESOLUTION, |r| r.0);
+    let resolution = arguments.resolution.map_or(BINS, |r| r.0);
     let (mut inputs, mut findings) = (None, Vec::new());
     let measure = |choice: &_| {
         let Taken { all, pixel_variance_sd, inputs: read, findings: found } =

@@ -22,9 +22,10 @@ pub(in crate::cli) struct LampArgs {
     #[arg(value_name = "FILE")]
     file: String,
     /// The figure whose error counts: flux, peak_intensity, beam_angle_c0_c180, beam_angle_c90_c270, mean_illuminance (of the floor),
-    /// illuminance (the floor's worst point, as a share of the mean), illuminance_1x, _2x, _5x, _10x (facing the lamp, so many times its
+    /// illuminance (the floor's worst point, as a share of the mean; what lies between the entries of a coarse table is often more than 1 %
+    /// there), illuminance_1x, _2x, _5x, _10x (facing the lamp, so many times its
     /// largest dimension away).
-    #[arg(long, value_name = "KEY", default_value = "illuminance")]
+    #[arg(long, value_name = "KEY", default_value = "mean_illuminance")]
     figure: String,
     /// How high above the floor the lamp hangs, m.
     #[arg(long, value_name = "M", default_value_t = 3.0)]

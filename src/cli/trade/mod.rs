@@ -11,6 +11,7 @@ mod target;
 
 use clap::Subcommand;
 
+pub(super) use self::capture::BINS as CAPTURE_BINS;
 pub(super) use self::target::Target;
 
 use super::{Failure, Talk};

@@ -64,8 +64,14 @@ pub(super) fn trade(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
             &[
                 ("meter_samples", Some(json!(render.meter_samples))),
                 ("solver", Some(json!(render.solver.word()))),
-                ("max_edges", render.max_edges.map(|n| json!(n))),
-                ("wavelength_tolerance", Some(json!(render.wavelength_tolerance))),
+                ("max_edges", Some(render.max_edges.map_or_else(|| json!("any"), |n| json!(n)))),
+                ("roulette_from", Some(json!(render.roulette_from))),
+                ("sampler", Some(json!(render.sampler.word()))),
+                ("wavelengths_per_path", Some(json!(render.wavelengths_per_path.word()))),
+                match render.wavelength_step_nm {
+                    Some(step) => ("wavelength_step_nm", Some(json!(step))),
+                    None => ("wavelength_tolerance", Some(json!(render.wavelength_tolerance))),
+                },
                 ("model", Some(json!(if render.model == Model::Full { "full" } else { "minimal" }))),
             ],
         )

@@ -62,6 +62,7 @@ pub(super) fn trade(arguments: &SpectrumArgs, talk: Talk) -> Result<(), Failure>
                 ("rule", choice.contract.rule.map(|r| json!(r.word()))),
                 ("range_nm", choice.contract.range_nm.map(|(low, high)| json!([low, high]))),
                 ("resample_nm", resampling.map(|r| json!(r.step_nm))),
+                ("thin", choice.thinning.map(|t| json!(t))),
                 ("interpolation", resampling.map(|r| json!(r.interpolation.word()))),
             ],
         )

@@ -41,7 +41,7 @@ pub(super) fn turned(luminaire: &mut Luminaire, turn: &Turn, findings: &mut Vec<
 /// Takes the spectra by direction out where they are not those of the new table.
 pub(super) fn drop_angular_spectra(luminaire: &mut Luminaire, findings: &mut Vec<Finding>) {
     if luminaire.angular_spectra.take().is_some() {
-        let message = "the spectra by direction were left out: they are not known at the new directions";
+        let message = "the spectra by direction were left out: they are not those of the new table";
         findings.push(Finding::warning("L404", message));
     }
 }

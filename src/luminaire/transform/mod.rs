@@ -21,7 +21,7 @@ pub use merge::{Part, merge};
 pub use scale::{Scale, scale};
 pub(in crate::luminaire) use sum::sum;
 pub use symmetrise::symmetrise;
-pub use thin::thinned;
+pub use thin::{fewer_angles, thinned};
 pub use turn::{Turn, turn};
 
 use super::{Distribution, Kind};

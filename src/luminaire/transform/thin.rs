@@ -1,7 +1,9 @@
 //! A table with fewer angles.
 
+use super::super::Luminaire;
 use super::super::distribution::Distribution;
-use super::Error;
+use super::{Error, facts};
+use crate::finding::Checked;
 
 /// The table with every n-th of its horizontal and of its vertical angles, the first and the last always among them: what a coarser
 /// measurement of the same luminaire would have given.
@@ -22,6 +24,19 @@ pub fn thinned(d: &Distribution, [every_horizontal, every_vertical]: [usize; 2])
     let angles = (of(d.horizontal_deg(), &planes), of(d.vertical_deg(), &rows));
     let table = Distribution::new(d.system(), d.symmetry(), angles.0, angles.1, values)?;
     Ok(table.with_interpolation(d.interpolation()))
+}
+
+/// The luminaire with fewer angles in its table ([`thinned`]); spectra by direction, which would keep all of them, are left out with a word.
+///
+/// # Errors
+/// [`Error::Argument`] for 0.
+pub fn fewer_angles(luminaire: &Luminaire, every: [usize; 2]) -> Result<Checked<Luminaire>, Error> {
+    let mut out = Luminaire { distribution: thinned(&luminaire.distribution, every)?, ..luminaire.clone() };
+    let mut findings = Vec::new();
+    if every != [1; 2] {
+        facts::drop_angular_spectra(&mut out, &mut findings);
+    }
+    Ok(Checked { value: out, findings })
 }
 
 #[cfg(test)]

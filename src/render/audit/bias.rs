@@ -19,10 +19,9 @@ use super::figure;
 use crate::brdf::{Brdf, parameter};
 use crate::geometry::direction::from_degrees;
 use crate::render::estimate::{Figure, REPLICATES, Replicate, stream};
-use crate::render::integrator::path::{Limits, PathTracer};
+use crate::render::integrator::path::{Follow, Limits, PathTracer};
 use crate::render::material::compensated::Compensated;
 use crate::render::measure::{Board, Meter, Settings};
-use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 use crate::render::sensor::camera::Camera;
 use crate::render::spool::Share;
@@ -55,7 +54,7 @@ impl Lost {
 
 /// The settings that lose nothing; `None` where these do not.
 fn unlimited(settings: &Settings) -> Option<Settings> {
-    let limits = Limits { polarisation: settings.limits.polarisation, ..Limits::default() };
+    let limits = Limits { follow: Follow::All, max_edges: None, shadows: true, ..settings.limits };
     (limits != settings.limits).then(|| Settings { limits, ..settings.clone() })
 }
 
@@ -94,7 +93,7 @@ pub fn of_picture(
         let one = |replicate: usize| {
             // Beyond the numbers of all pixels.
             let stream = stream(instrument, usize::MAX - replicate);
-            let mut sampler = Sampler::new(settings.seed, stream, 0);
+            let mut sampler = settings.sampler(stream);
             let mut tracer = PathTracer::new(scene, settings.limits, &settings.heroes);
             let mut sums = Replicate::new(scene.bands().len());
             let dark = vec![0.0; scene.bands().len()];

@@ -24,7 +24,6 @@ use crate::render::estimate::{Figure, REPLICATES, stream};
 use crate::render::integrator::light::{LightTracer, Visitor};
 use crate::render::measure::Settings;
 use crate::render::ray::Ray;
-use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 
 /// The number in the render whose random numbers the packets take: no instrument's.
@@ -204,7 +203,7 @@ pub fn audit(
     }
     let run = |replicate: usize| {
         let stream = stream(INSTRUMENT, replicate);
-        let mut sampler = Sampler::new(settings.seed, stream, 0);
+        let mut sampler = settings.sampler(stream);
         let mut tracer = LightTracer::new(scene, &settings.heroes);
         let mut ledger = Ledger {
             scene,

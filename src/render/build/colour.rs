@@ -2,7 +2,11 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
+
 use super::Builder;
+use crate::colorimetry::Observer;
+use crate::colorimetry::rgb::SRGB;
 use crate::constants::SecondRadiation;
 use crate::illuminant::named;
 use crate::render::bands::{Bands, RANGE_NM, Width, as_function};
@@ -160,20 +164,56 @@ impl Colours {
         all
     }
 
-    /// Every emission by itself, reflected once by every material, and twice by every pair of them.
-    pub(super) fn products(&self) -> Vec<Box<dyn Fn(f64) -> f64 + '_>> {
-        let mut out: Vec<Box<dyn Fn(f64) -> f64 + '_>> = Vec::new();
+    /// Every emission of a density by itself, with every reflectance, and with every pair of them.
+    fn chains(&self) -> Vec<Vec<&Colour>> {
+        let mut out = Vec::new();
         for e in self.emissions.iter().filter(|c| !matches!(c, Colour::Lines(_))) {
-            out.push(Box::new(|nm| e.at(nm)));
+            out.push(vec![e]);
             for (i, r) in self.reflectances.iter().enumerate() {
-                out.push(Box::new(|nm| e.at(nm) * r.at(nm)));
+                out.push(vec![e, r]);
                 let others =
                     if self.reflectances.len() <= PAIRED { &self.reflectances[i..] } else { &self.reflectances[i..=i] };
-                for s in others {
-                    out.push(Box::new(|nm| e.at(nm) * r.at(nm) * s.at(nm)));
-                }
+                out.extend(others.iter().map(|s| vec![e, r, s]));
             }
         }
         out
+    }
+
+    /// Every emission by itself, reflected once by every material, and twice by every pair of them.
+    pub(super) fn products(&self) -> Vec<Box<dyn Fn(f64) -> f64 + '_>> {
+        let mut out: Vec<Box<dyn Fn(f64) -> f64 + '_>> = Vec::new();
+        for chain in self.chains() {
+            out.push(Box::new(move |nm| chain.iter().map(|c| c.at(nm)).product()));
+        }
+        out
+    }
+
+    /// The greatest error of X, Y and Z of the same products, relative to the largest of the three, where light is its linear sRGB and a
+    /// surface that of it under D65, over that of D65, negative parts cut, and colours are multiplied channel by channel; `None` where there are
+    /// lines, or nothing shines.
+    pub(super) fn error_in_rgb(&self) -> Option<f64> {
+        if !self.lines().is_empty() {
+            return None;
+        }
+        let to_xyz = SRGB.to_xyz()?;
+        let from_xyz = to_xyz.inverse();
+        let bars = Observer::Cie1931.colour_matching_functions();
+        let nodes = Bands::uniform(RANGE_NM.0, 1.0);
+        let xyz = |f: &dyn Fn(f64) -> f64| {
+            let sum = |bar: &Weighting| nodes.wavelengths_nm().iter().map(|&nm| bar.at(nm) * f(nm)).sum::<f64>();
+            DVec3::from_array(bars.each_ref().map(sum))
+        };
+        let d65 = as_function(&named::source("D65", SecondRadiation::default()).ok()?.spectrum);
+        let white = from_xyz * xyz(&|nm| d65.at(nm));
+        let light = |c: &Colour| (from_xyz * xyz(&|nm| c.at(nm))).max(DVec3::ZERO);
+        let surface = |c: &Colour| (from_xyz * xyz(&|nm| d65.at(nm) * c.at(nm)) / white).max(DVec3::ZERO);
+        let off = |chain: Vec<&Colour>| {
+            let (first, rest) = chain.split_first()?;
+            let rgb = rest.iter().fold(light(first), |rgb, c| rgb * surface(c));
+            let exact = xyz(&|nm| chain.iter().map(|c| c.at(nm)).product());
+            let scale = exact.max_element();
+            (scale > 0.0).then(|| (to_xyz * rgb - exact).abs().max_element() / scale)
+        };
+        self.chains().into_iter().filter_map(off).reduce(f64::max)
     }
 }

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use super::audit::bias::SingleScattering;
 use super::bands::Bands;
 use super::description::spectrum::SpectrumSource;
-use super::description::{Description, Error, Model, Solver};
+use super::description::{Carried, Description, Error, Model, Solver};
 use super::format::Object;
 use super::integrator::path::{Follow, Limits};
 use super::light::Light;
@@ -210,14 +210,24 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     };
     let shadows = render.solver != Solver::Preview;
     let polarisation = analysis.polarisation;
-    let limits = Limits { follow, max_edges: render.max_edges, polarisation, shadows, ..Limits::default() };
+    if render.roulette_from == 0 {
+        return Err(builder.wrong(&(0..0), "a `roulette_from` of 0; expected the number of an edge, from 1"));
+    }
+    let limits = Limits {
+        follow,
+        max_edges: render.max_edges,
+        roulette_from: render.roulette_from,
+        polarisation,
+        shadows,
+        single_band: render.wavelengths_per_path == Carried::One,
+    };
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;
     let packets = render.solver == Solver::Bidirectional;
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
     let virtual_lights = if render.model == Model::Full { Some(false) } else { render.virtual_lights };
-    let settings = Settings { packets, virtual_lights, ..settings };
+    let settings = Settings { packets, virtual_lights, points: render.sampler, ..settings };
     Ok(Built {
         scene,
         instruments,
@@ -232,6 +242,16 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         single_scattering,
         incomplete,
     })
+}
+
+/// What three colours instead of wavelengths would leave of the light that the scene's spectra become: the greatest error of X, Y and Z of an
+/// emission, reflected up to twice, relative to the largest of the three, by multiplication in linear sRGB; `None` of spectral lines.
+///
+/// # Errors
+/// The first mistake in the scene's spectra, with its place in the text.
+pub fn error_in_rgb(text: &str, description: &Description, files: &dyn Files) -> Result<Option<f64>, Error> {
+    let builder = Builder { text, description, files, meshes: RefCell::default(), pictures: RefCell::default() };
+    Ok(colour::Colours::new(&builder)?.error_in_rgb())
 }
 
 /// The sphere around all bounded surfaces, and around the origin where there are none.

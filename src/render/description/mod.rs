@@ -27,6 +27,7 @@ use spectrum::SpectrumSource;
 use surface::Shape;
 use toml::Spanned;
 
+use super::sampler::Points;
 use crate::mistake;
 pub use crate::mistake::Mistake as Error;
 
@@ -79,6 +80,13 @@ pub struct Render {
     pub seed: u64,
     /// The longest path, edges from the instrument to the light; without it none is cut.
     pub max_edges: Option<u32>,
+    /// The edge from which on chance may end a path of little light (Russian roulette).
+    #[schemars(range(min = 1))]
+    pub roulette_from: u32,
+    /// How the random numbers lie.
+    pub sampler: Points,
+    /// Whether a path carries all wavelengths or one.
+    pub wavelengths_per_path: Carried,
     /// Step between wavelengths, nm; without it the coarsest that keeps to `wavelength_tolerance`.
     pub wavelength_step_nm: Option<f64>,
     /// The greatest error of the sum over wavelengths, relative.
@@ -104,6 +112,9 @@ impl Default for Render {
             meter_samples: 1 << 18,
             seed: 0,
             max_edges: None,
+            roulette_from: 4,
+            sampler: Points::Sobol,
+            wavelengths_per_path: Carried::All,
             wavelength_step_nm: None,
             wavelength_tolerance: 1e-3,
             patch_edge: None,
@@ -143,6 +154,27 @@ impl Solver {
             Self::Direct => "direct",
             Self::Radiosity => "radiosity",
             Self::Preview => "preview",
+        }
+    }
+}
+
+/// How many wavelengths a path from an instrument, or a packet that helps it, carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Carried {
+    /// All of them, as far as they go the same way.
+    All,
+    /// One, drawn for each path (hero wavelength): as right, and noisier.
+    One,
+}
+
+impl Carried {
+    /// Its name in a scene.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::One => "one",
         }
     }
 }

@@ -23,7 +23,6 @@ use super::estimate::{Estimate, Figure, REPLICATES, Replicate, stream};
 use super::integrator::light::{LightTracer, Visitor};
 use super::measure::Settings;
 use super::ray::Ray;
-use super::sampler::Sampler;
 use super::scene::Scene;
 use super::steps::{StepError, angles};
 use crate::geometry::direction::from_degrees;
@@ -212,7 +211,7 @@ impl Gonioreflectometer {
             .into_par_iter()
             .map(|replicate| {
                 let stream = stream(number, replicate);
-                let mut sampler = Sampler::new(settings.seed, stream, 0);
+                let mut sampler = settings.sampler(stream);
                 let mut tracer = LightTracer::new(scene, &settings.heroes);
                 let mut leaving = Leaving { flux: vec![0.0; bands], direction: None };
                 let mut reflectance = Replicate::new(bands);

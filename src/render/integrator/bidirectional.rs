@@ -319,6 +319,9 @@ impl<'a> PacketTracer<'a> {
     fn choose_hero(&mut self, u: f64) {
         self.split = false;
         self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
+        if self.limits.single_band {
+            self.split();
+        }
     }
 
     fn probability_of_hero(&self) -> f64 {

@@ -4,7 +4,7 @@
 //! ```text
 //! L ≈ Σ_k T_k [ Σ_s w_s f_s L_s |cosθ| / p_s ],    T_k = Π f_s |cosθ| / (p q)
 //! w_s = p_s² / Σ p²        power heuristic of multiple importance sampling
-//! q = min(1, n² max_b T_b)    probability of going on (Russian roulette)
+//! q = min(1, n² max_b T_b)    probability of going on (Russian roulette); of a single band, T_b without the draw of the band
 //! ```
 //!
 //! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
@@ -53,11 +53,20 @@ pub struct Limits {
     pub polarisation: bool,
     /// Whether anything can stand in the way of a light; without shadows a picture is a preview.
     pub shadows: bool,
+    /// Whether a path carries one band, drawn anew for each, instead of all at once.
+    pub single_band: bool,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { follow: Follow::All, max_edges: None, roulette_from: 4, polarisation: true, shadows: true }
+        Self {
+            follow: Follow::All,
+            max_edges: None,
+            roulette_from: 4,
+            polarisation: true,
+            shadows: true,
+            single_band: false,
+        }
     }
 }
 
@@ -214,7 +223,7 @@ impl<'a> PathTracer<'a> {
         }
         let [u0, u1, ..] = sampler.four();
         let (local, weight) = response.sample([u0, u1]);
-        self.throughput.fill(weight);
+        self.throughput.iter_mut().for_each(|t| *t *= weight);
         let direction = frame.world(local);
         let ray = Ray { origin: point.origin_towards(direction), direction };
         let own = response.pdf(local);
@@ -233,11 +242,19 @@ impl<'a> PathTracer<'a> {
         self.choose_hero(sampler);
     }
 
-    /// The path carries all bands, and a band is drawn that it will keep where it must be split.
+    /// The path carries all bands, and a band is drawn that it will keep where it must be split, or from here on.
     fn choose_hero(&mut self, sampler: &mut Sampler) {
         self.split = false;
         let u = sampler.one();
         self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
+        if self.limits.single_band {
+            self.split();
+        }
+    }
+
+    fn probability_of_hero(&self) -> f64 {
+        let below = if self.hero == 0 { 0.0 } else { self.heroes[self.hero - 1] };
+        self.heroes[self.hero] - below
     }
 
     /// The hero stands for all bands from here on.
@@ -246,11 +263,9 @@ impl<'a> PathTracer<'a> {
             return;
         }
         self.split = true;
-        let hero = self.hero;
-        let below = if hero == 0 { 0.0 } else { self.heroes[hero - 1] };
-        let kept = self.throughput[hero] / (self.heroes[hero] - below);
+        let kept = self.throughput[self.hero] / self.probability_of_hero();
         self.throughput.fill(0.0);
-        self.throughput[hero] = kept;
+        self.throughput[self.hero] = kept;
     }
 
     fn follow(&mut self, start: Edge, sampler: &mut Sampler) {
@@ -385,7 +400,8 @@ impl<'a> PathTracer<'a> {
             self.split();
         }
         let index_squared = edge.index_squared * drawn.eta * drawn.eta;
-        let strength = index_squared * self.throughput.iter().copied().fold(0.0, f64::max);
+        let drawn_for = if self.limits.single_band { self.probability_of_hero() } else { 1.0 };
+        let strength = index_squared * drawn_for * self.throughput.iter().copied().fold(0.0, f64::max);
         if count >= self.limits.roulette_from && strength < 1.0 {
             if u3 >= strength {
                 return None;

@@ -58,6 +58,7 @@ impl Source {
         // Packets of a light at infinity come through the sphere of what is bounded.
         let suits = limits.follow == Follow::All
             && limits.shadows
+            && !limits.single_band
             && limits.max_edges.is_none_or(|max| max > 2)
             && scene.surfaces().are_bounded()
             && scene.lights().iter().all(|light| light.emits_what_arrives());
@@ -103,10 +104,10 @@ pub struct Sets {
 }
 
 impl Sets {
-    /// None yet; `stream` names their random numbers in the run `seed`.
+    /// None yet; from the random numbers of a stream.
     #[must_use]
-    pub fn new(seed: u64, stream: u64) -> Self {
-        Self { sampler: Sampler::new(seed, stream, 0), packets: 0 }
+    pub fn new(sampler: Sampler) -> Self {
+        Self { sampler, packets: 0 }
     }
 
     /// Makes the next set, for so many pixels: a packet for every four of them, at most 64, which cost less than the pixels' samples.

@@ -5,8 +5,10 @@
 //! recommends settings and what leaves things out of a scene also answers here. Rungs are in the order of the ladder of models, from spectra
 //! and bidirectional scattering of everything down to three colours and a table of one angle.
 
+mod capture;
 mod scene;
 
+pub use capture::capture;
 pub use scene::scene;
 
 use super::{Measure, Sweep, brdf, image, lamp, spectrum};
@@ -65,6 +67,11 @@ fn rung(sweep: &Sweep, figure: usize, model: impl Into<String>, trials: impl Ite
     Some(Rung { model: model.into(), error: best })
 }
 
+/// Which of so many is taken, of 2, 4 and 8.
+fn nth(n: usize) -> String {
+    format!("{n}{}", if n == 2 { "nd" } else { "th" })
+}
+
 /// The numbers of the choices that are as said.
 fn those<'a, C>(choices: &'a [C], is: impl Fn(&C) -> bool + 'a) -> impl Iterator<Item = usize> + 'a {
     choices.iter().enumerate().filter(move |(_, c)| is(c)).map(|(i, _)| i)
@@ -89,7 +96,7 @@ pub fn spectrum(spectrum: &Spectrum, defined: bool, most: f64) -> Result<Vec<Req
     // A finer grid than its own is no simplification.
     let own = spectrum.grid().widest_step_nm();
     let mut rungs: Vec<Rung> = steps.iter().rev().filter(|s| **s > own).filter_map(|s| of_step(*s)).collect();
-    let as_it_is = move |c: &spectrum::Choice| whole(c) && c.resampling.is_none();
+    let as_it_is = move |c: &spectrum::Choice| whole(c) && c.resampling.is_none() && c.thinning.is_none();
     rungs.extend(rung(sweep, photopic, "its own samples", those(choices, as_it_is)));
     let figure = "photopic quantity, by the best rule and interpolation";
     let samples = Requirement::new("wavelengths", figure, rungs, most);
@@ -98,7 +105,8 @@ pub fn spectrum(spectrum: &Spectrum, defined: bool, most: f64) -> Result<Vec<Req
     ranges.dedup();
     let mut rungs: Vec<Rung> = (ranges.iter())
         .filter_map(|range| {
-            let is = |c: &spectrum::Choice| c.resampling.is_none() && !c.single && c.contract.range_nm == Some(*range);
+            let own = |c: &spectrum::Choice| c.resampling.is_none() && c.thinning.is_none() && !c.single;
+            let is = move |c: &spectrum::Choice| own(c) && c.contract.range_nm == Some(*range);
             rung(sweep, photopic, format!("{}-{} nm", range.0, range.1), those(choices, is))
         })
         .collect();
@@ -154,7 +162,7 @@ pub fn lamp(luminaire: &Luminaire, height_m: f64, most: f64) -> Result<Vec<Requi
     parts.dedup();
     let angles = parts.iter().filter_map(|every| {
         let is = move |c: &lamp::Choice| plain(c) && c.near_ratio == nearest && c.every == *every;
-        let [h, v] = every.map(|n| if n == 1 { "all".to_owned() } else { format!("every {n}th") });
+        let [h, v] = every.map(|n| if n == 1 { "all".to_owned() } else { format!("every {}", nth(n)) });
         rung(sweep, floor, format!("{h} of the planes, {v} of the angles in them"), those(choices, is))
     });
     let mut angles = Requirement::new("angles", &figure, angles.collect(), most);
@@ -164,10 +172,17 @@ pub fn lamp(luminaire: &Luminaire, height_m: f64, most: f64) -> Result<Vec<Requi
 
 /// What a material requires: whether its turn matters, and which form carries it. Errors are those of logarithms: 0.1 is about 10 %.
 ///
+/// `own_bins` are those of a material that is a table of half angles, which no finer one is needed for.
+///
 /// # Errors
 /// [`brdf::BrdfError`].
-pub fn material(material: &dyn Brdf, channels: &[Channel], most: f64) -> Result<Vec<Requirement>, brdf::BrdfError> {
-    let found = brdf::sweep(material, channels, None, 1)?;
+pub fn material(
+    material: &dyn Brdf,
+    channels: &[Channel],
+    own_bins: Option<usize>,
+    most: f64,
+) -> Result<Vec<Requirement>, brdf::BrdfError> {
+    let found = brdf::sweep(material, channels, own_bins, None, 1)?;
     let turned = if material.is_isotropic() { 0.0 } else { brdf::turned(material) };
     let rungs = vec![
         Rung { model: "isotropic (three angles)".to_owned(), error: Some(turned) },
@@ -186,7 +201,8 @@ pub fn material(material: &dyn Brdf, channels: &[Channel], most: f64) -> Result<
     };
     // Models in the order of their parameters, then tables from the coarsest on.
     let models = those(choices, |c| matches!(c, brdf::Choice::Model(_)));
-    let mut tables: Vec<usize> = those(choices, |c| matches!(c, brdf::Choice::Bins(_))).collect();
+    let bins = those(choices, |c| matches!(c, brdf::Choice::Bins(_)));
+    let mut tables: Vec<usize> = bins.filter(|i| sweep.trials[*i].offered).collect();
     tables.reverse();
     let own = those(choices, |c| *c == brdf::Choice::Own);
     let rungs = models.chain(tables).chain(own).map(one).collect();

@@ -1,12 +1,12 @@
 //! What a scene requires: how many wavelengths, which paths of light, polarisation, scattering that knows a turn.
 //!
 //! Wavelengths are chosen by the renderer ([`crate::render::bands`]), which measures the error that each choice leaves on the products of
-//! the scene's own spectra. Paths are tried by rendering both ways: the meters are read with the same seeds under either, so that what the
+//! the scene's own spectra; so does multiplication in three colours, which the renderer does not offer. Paths are tried by rendering both ways: the meters are read with the same seeds under either, so that what the
 //! paths have in common cancels; the error is the mean of the relative differences, with Student's limit at 95 % on top.
 
 use super::{Requirement, Rung};
 use crate::math::student::two_sided_95;
-use crate::render::build::{Files, build};
+use crate::render::build::{Files, build, error_in_rgb};
 use crate::render::description::{Description, Model, Render, Solver};
 use crate::trade::render::{Choice, RenderError};
 
@@ -44,6 +44,9 @@ pub fn scene(
     let mut out = Vec::new();
     if reference.built().wavelength_error.is_some() {
         let mut rungs: Vec<Rung> = Vec::new();
+        if let Some(error) = error_in_rgb(text, description, files)? {
+            rungs.push(Rung { model: "RGB (linear sRGB)".to_owned(), error: Some(error) });
+        }
         for wavelength_tolerance in TOLERANCES {
             let mut description = description.clone();
             description.render = Render { wavelength_tolerance, ..own.clone() };
@@ -53,7 +56,7 @@ pub fn scene(
                 rungs.push(Rung { model, error: built.wavelength_error });
             }
         }
-        let figure = "sums over wavelength of the scene's own spectra, against 1 nm";
+        let figure = "X, Y and Z of the scene's own spectra, against 1 nm";
         out.push(Requirement::new("wavelengths", figure, rungs, most));
     }
     let values = read(&reference);

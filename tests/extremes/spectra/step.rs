@@ -4,7 +4,7 @@ use photopic::conversion::Settings;
 use photopic::spectrum::Quantity;
 use photopic::spectrum::integrate::{Contract, Rule};
 
-use super::{K_M, close, convert_with, luminous_integral, photopic, rule, sampled};
+use crate::{K_M, close, convert_with, luminous_integral, photopic, rule, sampled};
 
 type Shape = (String, Box<dyn Fn(f64) -> f64>);
 

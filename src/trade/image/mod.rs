@@ -17,28 +17,20 @@
 //! **Reference**: all bands and pixels, under the same contract. What lies between the bands is not known: what a cubic spline through
 //! them, sampled four times as finely, changes counts as the reference's own error, with half a unit in the last place of `f32`.
 
-use exr::prelude::f16;
+mod kept;
+mod seen;
 
+use self::kept::{Kept, Rgb};
+use self::seen::{Reference, Seen, refined};
 use super::timing::interleaved;
 use super::{Estimate, Figure, Sweep, Trial};
-use crate::colorimetry::Observer;
-use crate::colorimetry::chromaticity::xyz_of_xy;
-use crate::colorimetry::difference::{ciede2000, lab};
-use crate::colorimetry::rgb::SRGB;
-use crate::constants::SecondRadiation;
-use crate::illuminant::named;
-use crate::image::kernel::Weights;
-use crate::image::reduced::{Bands, Reduced};
-use crate::image::{Channel, Content, Description, Error, Memory, Plan, PlanError, Region, Settings, Source, Target};
-use crate::math::interpolate;
-use crate::photometry::alpha_opic;
+use crate::image::reduced::Bands;
+use crate::image::{Error, Memory, PlanError, Region, Settings, Source};
 
 /// Numbers of bands that are tried.
 const BANDS: [usize; 4] = [81, 32, 16, 8];
 /// Sides of the blocks that are tried.
 const BLOCKS: [usize; 4] = [1, 2, 4, 8];
-/// The spline is sampled this many times as finely.
-const REFINEMENT: usize = 4;
 /// Samples of an image that are tried at most.
 const MOST_SAMPLES: usize = 1 << 22;
 
@@ -191,268 +183,12 @@ pub fn sweep(image: &Memory, settings: &Settings, repeats: usize) -> Result<Imag
     Ok(ImageSweep { sweep, choices })
 }
 
-/// The planes of an image, pixel by pixel.
-struct Seen {
-    xyz: Vec<[f32; 3]>,
-    /// `None` where the bands do not reach.
-    melanopic: Option<Vec<f32>>,
-    width: usize,
-}
-
-impl Seen {
-    fn of(image: &Memory, settings: &Settings) -> Result<Self, ImageError> {
-        let plan = Plan::new(image.description(), &Target::Xyz(Observer::Cie1931), settings)?.value;
-        let xyz = triples(&planes(image, &plan), image.description().width);
-        Ok(Self { xyz, melanopic: melanopic(image, settings), width: image.description().width })
-    }
-}
-
-/// X, Y and Z pixel by pixel, of planes row by row.
-fn triples(planes: &[f32], width: usize) -> Vec<[f32; 3]> {
-    let rows = planes.chunks_exact(3 * width.max(1));
-    rows.flat_map(|row| (0..width).map(move |x| [row[x], row[width + x], row[2 * width + x]])).collect()
-}
-
-/// What a plan makes of an image, row by row and plane by plane.
-fn planes(image: &Memory, plan: &Plan) -> Vec<f32> {
-    let (width, channels) = (image.description().width, image.description().channels.len());
-    let outputs = plan.description().channels.len();
-    let mut out = vec![0.0; image.description().pixels() * outputs];
-    let mut row = Vec::with_capacity(plan.channels().len() * width);
-    for (samples, out) in image.samples().chunks_exact(channels * width).zip(out.chunks_exact_mut(outputs * width)) {
-        row.clear();
-        plan.channels().iter().for_each(|c| row.extend_from_slice(&samples[c * width..(c + 1) * width]));
-        plan.row(&row, width, out);
-    }
-    out
-}
-
-fn melanopic(image: &Memory, settings: &Settings) -> Option<Vec<f32>> {
-    let receptor = alpha_opic::RECEPTORS.iter().position(|r| *r == "melanopic")?;
-    let target = Target::AlphaOpic { receptor, equivalent_daylight: false };
-    let plan = Plan::new(image.description(), &target, settings).ok()?.value;
-    Some(planes(image, &plan))
-}
-
-/// The whole image, and what its errors are measured by.
-struct Reference {
-    seen: Seen,
-    /// Tristimulus values of white.
-    white: [f64; 3],
-    mean_y: f64,
-    mean_melanopic: f64,
-    /// CIELAB, pixel by pixel.
-    lab: Vec<[f64; 3]>,
-}
-
-impl Reference {
-    fn new(description: &Description, seen: Seen, settings: &Settings) -> Result<Self, ImageError> {
-        let y = || seen.xyz.iter().map(|p| f64::from(p[1])).filter(|y| y.is_finite());
-        let (sum, largest) = (y().sum::<f64>(), y().fold(0.0, f64::max));
-        if !(sum > 0.0 && largest > 0.0) {
-            return Err(ImageError::Dark);
-        }
-        let white = if description.content == Content::Reflectance {
-            diffuser(description, settings)?
-        } else {
-            xyz_of_xy(SRGB.white).map_or([largest; 3], |white| white.map(|v| v * largest))
-        };
-        let lab = seen.xyz.iter().map(|p| lab(p.map(f64::from), white)).collect();
-        let melanopic = seen.melanopic.as_deref().unwrap_or_default();
-        let mean_melanopic = melanopic.iter().map(|v| f64::from(*v)).sum::<f64>() / melanopic.len() as f64;
-        Ok(Self { white, mean_y: sum / seen.xyz.len() as f64, mean_melanopic, lab, seen })
-    }
-
-    /// The errors of [`FIGURES`] of an image whose pixels stand for blocks of these.
-    fn errors(&self, other: &Seen, block: usize) -> [Option<f64>; COUNT] {
-        let width = self.seen.width;
-        let place = |i: usize| (i / width / block) * other.width + (i % width) / block;
-        let (mut count, mut coloured) = (0_usize, 0_usize);
-        let (mut squares, mut apart, mut colours, mut worst) = (0.0, 0.0, 0.0, 0.0_f64);
-        for (i, own) in self.seen.xyz.iter().enumerate() {
-            let (a, b) = (own.map(f64::from), other.xyz[place(i)].map(f64::from));
-            if !a.iter().all(|v| v.is_finite()) {
-                continue;
-            }
-            if !b.iter().all(|v| v.is_finite()) {
-                // Beyond what half precision holds.
-                return [None; COUNT];
-            }
-            count += 1;
-            squares += (a[1] - b[1]).powi(2);
-            let sums = [a, b].map(|p| p.iter().sum::<f64>());
-            if sums.iter().all(|s| *s > 0.0) {
-                coloured += 1;
-                apart += (a[0] / sums[0] - b[0] / sums[1]).powi(2) + (a[1] / sums[0] - b[1] / sums[1]).powi(2);
-            }
-            let difference = ciede2000(self.lab[i], lab(b, self.white));
-            colours += difference;
-            worst = worst.max(difference);
-        }
-        let melanopic = self.seen.melanopic.as_ref().zip(other.melanopic.as_ref()).map(|(own, found)| {
-            let squares = own.iter().enumerate().map(|(i, v)| f64::from(v - found[place(i)]).powi(2));
-            (squares.filter(|s| s.is_finite()).sum::<f64>() / own.len() as f64).sqrt() / self.mean_melanopic
-        });
-        let count = count as f64;
-        let all = [
-            Some((squares / count).sqrt() / self.mean_y),
-            Some((apart / coloured as f64).sqrt()),
-            Some(colours / count),
-            Some(worst),
-            melanopic,
-        ];
-        all.map(|e| e.filter(|e| e.is_finite()))
-    }
-}
-
-/// Tristimulus values of the perfect diffuser under the light of the settings.
-fn diffuser(description: &Description, settings: &Settings) -> Result<[f64; 3], ImageError> {
-    let white = Description { width: 1, height: 1, ..description.clone() };
-    let samples = vec![1.0; white.channels.len()];
-    let seen = Seen::of(&Memory::new(white, samples), settings)?;
-    Ok(seen.xyz[0].map(f64::from))
-}
-
-/// The image with [`REFINEMENT`] times as many bands, on the spline through its own.
-fn refined(image: &Memory) -> Memory {
-    let description = image.description();
-    let bands = description.bands();
-    let nm: Vec<f64> = bands.iter().map(|(_, nm)| *nm).collect();
-    let steps = (bands.len() - 1) * REFINEMENT;
-    let fine = |i: usize| {
-        let (at, part) = (i / REFINEMENT, i % REFINEMENT);
-        if part == 0 { nm[at] } else { nm[at] + (nm[at + 1] - nm[at]) * part as f64 / REFINEMENT as f64 }
-    };
-    let fine: Vec<f64> = (0..=steps).map(fine).collect();
-    // Splines are linear in their values: once for each band, then weights.
-    let weights: Vec<Vec<f64>> = (0..nm.len())
-        .map(|band| {
-            let unit: Vec<f64> = (0..nm.len()).map(|i| if i == band { 1.0 } else { 0.0 }).collect();
-            let slopes = interpolate::spline_slopes(&nm, &unit);
-            fine.iter().map(|at| interpolate::hermite(&nm, &unit, &slopes, *at)).collect()
-        })
-        .collect();
-    let columns: Vec<Vec<f64>> = (0..fine.len()).map(|i| weights.iter().map(|w| w[i]).collect()).collect();
-    let kernel = Weights::new(&columns);
-    let (width, channels) = (description.width, description.channels.len());
-    let unit = description.channels[bands[0].0].unit.clone();
-    let mut fine_description = description.clone();
-    fine_description.channels = fine.iter().map(|nm| Channel::band(format!("{nm} nm"), unit.clone(), *nm)).collect();
-    let mut samples = vec![0.0; description.pixels() * fine.len()];
-    let mut row = Vec::with_capacity(bands.len() * width);
-    let rows = image.samples().chunks_exact(channels * width);
-    for (own, out) in rows.zip(samples.chunks_exact_mut(fine.len() * width)) {
-        row.clear();
-        bands.iter().for_each(|(c, _)| row.extend_from_slice(&own[c * width..(c + 1) * width]));
-        kernel.apply(&row, width, out, width);
-    }
-    Memory::new(fine_description, samples)
-}
-
-/// The image in RGB, and the way from there to X, Y and Z.
-struct Rgb {
-    image: Memory,
-    to_xyz: Weights,
-}
-
-impl Rgb {
-    fn of(image: &Memory, settings: &Settings) -> Result<Self, ImageError> {
-        let description = image.description();
-        let degenerate = || PlanError::Degenerate { space: SRGB.name.to_owned() };
-        let to_xyz = SRGB.to_xyz().ok_or_else(degenerate)?;
-        let from_xyz = to_xyz.inverse();
-        let reflects = description.content == Content::Reflectance;
-        let mut under = settings.clone();
-        let mut light = glam::DVec3::ONE;
-        if reflects {
-            light = from_xyz * glam::DVec3::from(diffuser(description, settings)?);
-            let d65 = named::source("D65", SecondRadiation::default());
-            under.illuminant = d65.ok().map(|d65| (d65.name, d65.spectrum));
-            under.white_luminance = None;
-        }
-        let seen = Seen::of(image, &under)?;
-        let white =
-            if reflects { from_xyz * glam::DVec3::from(diffuser(description, &under)?) } else { glam::DVec3::ONE };
-        let (width, height) = (description.width, description.height);
-        let mut samples = vec![0.0; 3 * seen.xyz.len()];
-        for (pixel, xyz) in seen.xyz.iter().enumerate() {
-            let rgb = (from_xyz * glam::DVec3::from(xyz.map(f64::from)) / white).max(glam::DVec3::ZERO);
-            let (x, y) = (pixel % width, pixel / width);
-            for k in 0..3 {
-                samples[(3 * y + k) * width + x] = rgb[k] as f32;
-            }
-        }
-        let channels = ["R", "G", "B"].map(|n| Channel::new(n, "", crate::image::Meaning::Other)).to_vec();
-        // Column k of the matrix is what channel k gives.
-        let columns: Vec<Vec<f64>> =
-            (0..3).map(|out| (0..3).map(|k| to_xyz.col(k)[out] * light[k]).collect()).collect();
-        let image = Memory::new(Description::planes(width, height, channels), samples);
-        Ok(Self { image, to_xyz: Weights::new(&columns) })
-    }
-}
-
-/// An image as a trial keeps it.
-struct Kept {
-    image: Memory,
-    way: Way,
-}
-
-enum Way {
-    Plan(Box<Plan>),
-    Rgb(Weights),
-}
-
-impl Kept {
-    fn new(image: &Memory, rgb: &Rgb, choice: Choice, settings: &Settings) -> Result<Self, ImageError> {
-        let (source, bands) = match choice.spectral {
-            Spectral::Own => (image, None),
-            Spectral::Fewer(n, how) => (image, Some((n, how))),
-            Spectral::Rgb => (&rgb.image, None),
-        };
-        // The counts are those of the image: neither this nor reading from memory fails.
-        let reduced = Reduced::new(source.clone(), bands, choice.block);
-        let none = |_: Error| ImageError::Dark;
-        let mut reduced = reduced.map_err(|_| ImageError::Bands { found: 0 })?;
-        let mut kept = Memory::load(&mut reduced).map_err(none)?;
-        if choice.half {
-            let samples = kept.samples().iter().map(|v| f16::from_f32(*v).to_f32()).collect();
-            kept = Memory::new(kept.description().clone(), samples);
-        }
-        let way = match choice.spectral {
-            Spectral::Rgb => Way::Rgb(rgb.to_xyz.clone()),
-            _ => Way::Plan(Box::new(Plan::new(kept.description(), &Target::Xyz(Observer::Cie1931), settings)?.value)),
-        };
-        Ok(Self { image: kept, way })
-    }
-
-    /// X, Y and Z, row by row and plane by plane.
-    fn xyz(&self) -> Vec<f32> {
-        match &self.way {
-            Way::Plan(plan) => planes(&self.image, plan),
-            Way::Rgb(weights) => {
-                let width = self.image.description().width;
-                let mut out = vec![0.0; self.image.samples().len()];
-                let rows = self.image.samples().chunks_exact(3 * width).zip(out.chunks_exact_mut(3 * width));
-                rows.for_each(|(row, out)| weights.apply(row, width, out, width));
-                out
-            }
-        }
-    }
-
-    fn seen(&self, settings: &Settings) -> Result<Seen, ImageError> {
-        let width = self.image.description().width;
-        let melanopic = match self.way {
-            Way::Plan(_) => melanopic(&self.image, settings),
-            Way::Rgb(_) => None,
-        };
-        Ok(Seen { xyz: triples(&self.xyz(), width), melanopic, width })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::Meaning;
+    use crate::constants::SecondRadiation;
+    use crate::illuminant::named;
+    use crate::image::{Channel, Content, Description, Meaning};
     use crate::spectrum::integrate::{Contract, Rule};
 
     /// 380–780 nm by 1 nm; the sample at (x, y) is that of `f`.

@@ -5,7 +5,7 @@ use photopic::spectrum::integrate::Rule;
 use photopic::spectrum::{Quantity, Spectrum};
 use photopic::tables;
 
-use super::{convert, convert_with, has, photopic, rule, sampled, sound_json};
+use crate::{convert, convert_with, has, photopic, rule, sampled, sound_json};
 
 fn planck(kelvin: f64) -> impl Fn(f64) -> f64 {
     // Relative; c₂ of the ITS-90.

@@ -7,7 +7,7 @@ use photopic::spectrum::integrate::Rule;
 use photopic::spectrum::{Grid, Quantity, Spectrum};
 use serde_json::Value;
 
-use super::{convert, convert_with, density, has, photopic, rule, sampled, sound_json};
+use crate::{convert, convert_with, density, has, photopic, rule, sampled, sound_json};
 
 fn office_led() -> Spectrum {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/spectra/office-led.csv");

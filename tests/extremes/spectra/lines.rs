@@ -3,7 +3,7 @@
 
 use photopic::spectrum::{Grid, Quantity, Spectrum};
 
-use super::{K_M, close, convert, density, has, photopic, sound_json, v};
+use crate::{K_M, close, convert, density, has, photopic, sound_json, v};
 
 /// λ, V(λ) (CIE 018:2019, Table 1), V′(λ) (Table 2) and x̄, z̄ (CIE 018:2019, Table 6) as printed; `None` beyond a table.
 type Printed = (f64, f64, Option<f64>, f64, f64);

@@ -4,7 +4,7 @@ use photopic::spectrum::format::{self, ReadOptions};
 use photopic::spectrum::integrate::Rule;
 use photopic::spectrum::{Grid, Quantity, Sampling, Spectrum};
 
-use super::{K_M, close, convert, convert_with, density, has, photopic, rule, sampled, sound_json, v};
+use crate::{K_M, close, convert, convert_with, density, has, photopic, rule, sampled, sound_json, v};
 
 #[test]
 fn all_zero_is_dark_and_every_ratio_is_undefined() {

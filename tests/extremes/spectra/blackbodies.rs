@@ -4,7 +4,7 @@ use photopic::constants::SecondRadiation;
 use photopic::illuminant::named;
 use photopic::spectrum::Quantity;
 
-use super::{K_M, close, convert, has, photopic, sound_json, v};
+use crate::{K_M, close, convert, has, photopic, sound_json, v};
 
 /// c₂ of the ITS-90, m·K; c₁L = 2hc², W·m²/sr, exact SI.
 const C2: f64 = 1.4388e-2;

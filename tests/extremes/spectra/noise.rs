@@ -5,7 +5,7 @@ use photopic::spectrum::Quantity;
 
 use photopic::spectrum::integrate::Rule;
 
-use super::{K_M, close, convert, convert_with, has, photopic, rule, sampled, sound_json};
+use crate::{K_M, close, convert, convert_with, has, photopic, rule, sampled, sound_json};
 
 /// V(λ), CIE 018:2019, Table 1.
 const V_450: f64 = 0.038;
