@@ -78,7 +78,7 @@ fn shared_exponents_hold_starlight_beside_the_sun() {
 /// Of nothing but zeros, of one pixel, of no number: differences are what they are, and no mean is taken of nothing.
 #[test]
 fn differences_of_nothing_are_nothing() {
-    let of = |a: &[f32], b: &[f32]| differences(&mut plane(a), &mut plane(b), &[(0, 0)]).expect("alike")[0].clone();
+    let of = |a: &[f32], b: &[f32]| differences(&mut plane(a), &mut plane(b), &[(0, 0)]).expect("alike")[0];
     let dark = of(&[0.0; 4], &[0.0; 4]);
     assert_eq!((dark.mean(), dark.rmse()), (0.0, 0.0));
     let one = of(&[1e-30], &[2e-30]);

@@ -43,7 +43,7 @@ fn polygons_keep_their_digits() {
     for ((width, height), omega, projected) in [
         ((tiny, tiny), 8.673_617_379_884_035e-19, 8.673_617_379_884_035e-19),
         ((1.0, slit), 8.134_767_913_360_664e-13, 7.854_829_245_850_907e-13),
-        ((vast, vast), 6.283_185_296_642_874, 3.141_592_653_589_793),
+        ((vast, vast), 6.283_185_296_642_874, PI),
     ] {
         let corners = rectangle_corners(width, height, 1.0);
         // From corners a billion times as far as the plane the sums of the formula lose as many digits.
