@@ -56,6 +56,8 @@ def material(name, m, shapes, dispersive):
         out.append(f"checkerboard = {{ even = {even}, odd = {odd}, fields = [{fields}, {fields}] }}")
     elif m["type"] == "diffuse":
         out.append(f"reflectance = {table(m['reflectance'])}")
+        # As the references have it: the upper side of the Cornell box's lamp is black.
+        out.append("one_sided = true")
     elif dispersive:
         out.append(SELLMEIER.format(b=m["sellmeier_B"], c=m["sellmeier_C_um2"]))
     else:

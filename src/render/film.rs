@@ -259,7 +259,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         );
         for index in 0..numbers.iter().copied().max().unwrap_or(0) {
             if let Some(lights) = tracer.virtual_lights() {
-                sets.next(lights, numbers.iter().filter(|n| **n > index).count());
+                sets.next(lights, numbers.iter().filter(|n| **n > index).count(), width);
             }
             for (x, sampler) in columns.clone().zip(&mut samplers).filter(|(x, _)| numbers[*x] > index) {
                 sampler.start(index);

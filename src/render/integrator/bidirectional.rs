@@ -42,12 +42,11 @@
 use glam::DVec3;
 
 use super::frame::Frame;
+use super::packet::{Origin, Packet, Vertex};
 use super::path::Limits;
-use super::polarisation::Polarisation;
-use crate::math::sampling;
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
-use crate::render::material::{Material, Transport};
+use crate::render::material::Transport;
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
@@ -174,32 +173,10 @@ impl Splats {
 pub struct PacketTracer<'a> {
     scene: &'a Scene,
     limits: Limits,
-    heroes: &'a [f64],
-    shares: &'a Shares,
     target: Target<'a>,
     choice: Choice,
-    flux: Vec<f64>,
+    packet: Packet<'a>,
     value: Vec<f64>,
-    polarisation: Polarisation,
-    hero: usize,
-    /// The packet carries its hero alone.
-    split: bool,
-    /// The packet was converted by a fluorescent surface.
-    fluoresced: bool,
-}
-
-/// A vertex that a packet came to.
-struct Vertex<'a> {
-    point: SurfacePoint,
-    frame: Frame,
-    material: &'a dyn Material,
-    /// The direction back to where the packet came from, in the world and in the frame.
-    back: DVec3,
-    arriving: DVec3,
-    /// The band by which the lobes on the lamp's side of it were drawn.
-    hero: usize,
-    /// |ω_i·n_s| / |ω_i·n_g|
-    shading: f64,
 }
 
 /// How other ways find what the packet is about to find: (p/p_t₁)², without what draws the first edge from the camera.
@@ -229,32 +206,17 @@ impl<'a> PacketTracer<'a> {
         Self {
             scene,
             limits,
-            heroes,
-            shares,
             target,
             choice: Choice::new(scene.lights(), middle),
-            flux: vec![0.0; n],
+            packet: Packet::new(scene, limits, heroes, shares),
             value: vec![0.0; n],
-            polarisation: Polarisation::new(n),
-            hero: 0,
-            split: false,
-            fluoresced: false,
         }
     }
 
     /// Sends one packet through the scene; the mean of what packets add is what they add to the picture's radiance or the meter's reading.
     pub fn packet(&mut self, sampler: &mut Sampler, splats: &mut Splats) {
         splats.next_packet();
-        let [choice, u0, u1, hero] = sampler.four();
-        let [u2, u3, u4, _] = sampler.four();
-        let Some((index, probability)) = self.shares.draw(choice) else { return };
-        let light = &self.scene.lights()[index];
-        let Some(mut ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
-        self.flux.iter_mut().for_each(|f| *f /= probability);
-        let start: f64 = self.flux.iter().sum();
-        self.choose_hero(hero);
-        self.fluoresced = false;
-        self.polarisation.clear();
+        let Some((mut ray, origin)) = self.packet.emit(sampler) else { return };
         let mut rivals: Option<Rivals> = None;
         let most = self.limits.max_edges;
         let too_long = |edges: u32| most.is_some_and(|max| edges > max);
@@ -266,85 +228,39 @@ impl<'a> PacketTracer<'a> {
             let closest = self.scene.surfaces().closest(&ray, f64::INFINITY);
             if let Target::Area(shape) = self.target {
                 let reach = closest.as_ref().map_or(f64::INFINITY, |(_, crossing)| crossing.t * (1.0 + NEAR));
-                self.land(shape, &ray, reach, rivals, (index, probability), splats);
+                self.land(shape, &ray, reach, rivals, origin, splats);
             }
             let Some((surface, crossing)) = closest else { return };
             if too_long(edges + 1) {
                 return;
             }
-            let point = self.scene.surfaces().surface_point(surface, &ray, &crossing);
-            let frame = Frame::of(point.shading, point.tangent);
-            let (back, material) = (-ray.direction, self.scene.material(surface));
-            let arriving = frame.local(back);
-            // A shading normal can send light through the surface: no light comes from there.
-            if back.dot(point.normal) * arriving.z <= 0.0 {
+            let Some(vertex) = self.packet.vertex(&ray, surface, &crossing) else { return };
+            let seen = !vertex.material.is_delta();
+            let Some(here) = rivals.or_else(|| self.rivals(origin, &vertex.point, vertex.back, crossing.t, seen))
+            else {
                 return;
-            }
-            let here = match rivals {
-                Some(rivals) => rivals,
-                None => match self.rivals((index, probability), &point, back, crossing.t, !material.is_delta()) {
-                    Some(rivals) => rivals,
-                    None => return,
-                },
             };
-            let hero = self.hero;
-            if material.convert(point.uv, Transport::Flux, &mut self.flux, &mut self.value) {
-                let [u, ..] = sampler.four();
-                self.choose_hero(u);
-                self.fluoresced = true;
-            }
-            if material.splits() {
-                self.split();
-            }
-            let shading = arriving.z.abs() / back.dot(point.normal).abs();
-            let vertex = Vertex { point, frame, material, back, arriving, hero, shading };
-            let [u0, u1, u2, chance] = sampler.four();
-            if !material.is_delta() {
+            self.packet.arrive(&vertex, sampler);
+            let u = sampler.four();
+            if seen {
                 self.connect(&vertex, here, sampler, splats);
             }
-            let Some((direction, behind)) = self.scatter(&vertex, here, [u0, u1, u2]) else { return };
-            rivals = Some(behind);
-            let strength = self.flux.iter().sum::<f64>() / start;
-            if strength < 1.0 {
-                let (goes_on, _) = sampling::split(chance, strength);
-                if !goes_on {
-                    return;
-                }
-                self.flux.iter_mut().for_each(|f| *f /= strength);
-            }
-            ray = Ray { origin: vertex.point.origin_towards(direction), direction };
+            let Some((next, drawn)) = self.packet.scatter(&vertex, u) else { return };
+            ray = next;
+            rivals = Some(if drawn.delta {
+                // A lamp is not sought for a lobe of Dirac's.
+                Rivals { seeks: 0.0, ..here }
+            } else {
+                here.after(vertex.material.pdf(drawn.direction, vertex.arriving, vertex.hero), drawn.pdf)
+            });
         }
-    }
-
-    fn choose_hero(&mut self, u: f64) {
-        self.split = false;
-        self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
-        if self.limits.single_band {
-            self.split();
-        }
-    }
-
-    fn probability_of_hero(&self) -> f64 {
-        let below = if self.hero == 0 { 0.0 } else { self.heroes[self.hero - 1] };
-        self.heroes[self.hero] - below
-    }
-
-    /// The hero stands for all bands from here on.
-    fn split(&mut self) {
-        if self.split {
-            return;
-        }
-        self.split = true;
-        let kept = self.flux[self.hero] / self.probability_of_hero();
-        self.flux.fill(0.0);
-        self.flux[self.hero] = kept;
     }
 
     /// The rivals at the first vertex of a packet from a light of that probability, from which the light may be sought; `None` where what
     /// packets find is left to others.
     fn rivals(
         &mut self,
-        (light, probability): (usize, f64),
+        Origin { light, probability }: Origin,
         point: &SurfacePoint,
         back: DVec3,
         distance: f64,
@@ -377,7 +293,7 @@ impl<'a> PacketTracer<'a> {
         let direction = -view.direction;
         let outgoing = vertex.frame.local(direction);
         vertex.material.evaluate(vertex.arriving, outgoing, Transport::Radiance, &mut self.value);
-        if self.value.iter().zip(&self.flux).all(|(v, f)| v * f == 0.0) {
+        if self.value.iter().zip(self.packet.flux()).all(|(v, f)| v * f == 0.0) {
             return;
         }
         let ray = Ray { origin: point.origin_towards(direction), direction };
@@ -386,8 +302,8 @@ impl<'a> PacketTracer<'a> {
         }
         let met = rivals.after(vertex.material.pdf(outgoing, vertex.arriving, vertex.hero), 1.0).meets;
         let weight = 1.0 / (1.0 + view.density * view.density * met);
-        let factor = weight * vertex.shading * direction.dot(point.normal).abs() * view.response;
-        self.bring(factor, splats.of(view.pixel, self.flux.len()));
+        let factor = weight * direction.dot(point.normal).abs() * view.response;
+        self.bring(factor, splats.of(view.pixel, self.value.len()));
     }
 
     /// Adds the packet where it lands on the outside of a meter's shape, which its next edge reaches within `reach` metres.
@@ -397,7 +313,7 @@ impl<'a> PacketTracer<'a> {
         ray: &Ray,
         reach: f64,
         rivals: Option<Rivals>,
-        light: (usize, f64),
+        origin: Origin,
         splats: &mut Splats,
     ) {
         let Some(crossing) = shape.cross(ray, 0.0, reach) else { return };
@@ -406,50 +322,20 @@ impl<'a> PacketTracer<'a> {
         if cos <= 0.0 {
             return;
         }
-        let Some(rivals) = rivals.or_else(|| self.rivals(light, &point, back, crossing.t, true)) else { return };
+        let Some(rivals) = rivals.or_else(|| self.rivals(origin, &point, back, crossing.t, true)) else { return };
         let own = Response::Planar.pdf(DVec3::new(0.0, 0.0, cos));
         let weight = 1.0 / (1.0 + rivals.after(own, shape.area() * cos).meets);
         self.value.fill(1.0);
-        self.bring(weight / shape.area(), splats.of(0, self.flux.len()));
+        self.bring(weight / shape.area(), splats.of(0, self.value.len()));
     }
 
     /// Adds `factor` times flux and value to the bands in which they are seen.
     fn bring(&self, factor: f64, splat: &mut [f64]) {
-        if self.fluoresced && !self.split {
-            let hero = self.hero;
-            splat[hero] += factor * self.flux[hero] * self.value[hero] / self.probability_of_hero();
+        let (flux, (hero, probability)) = (self.packet.flux(), self.packet.hero());
+        if self.packet.is_seen_by_hero() {
+            splat[hero] += factor * flux[hero] * self.value[hero] / probability;
         } else {
-            splat.iter_mut().zip(&self.flux).zip(&self.value).for_each(|((s, f), v)| *s += factor * f * v);
+            splat.iter_mut().zip(flux).zip(&self.value).for_each(|((s, f), v)| *s += factor * f * v);
         }
-    }
-
-    /// Draws the packet's next direction, with the rivals behind the vertex; `None` where it ends.
-    fn scatter(&mut self, vertex: &Vertex<'_>, rivals: Rivals, u: [f64; 3]) -> Option<(DVec3, Rivals)> {
-        let Vertex { point, material, arriving, .. } = vertex;
-        let drawn = material.sample(*arriving, u, Transport::Flux, self.hero, &mut self.value)?;
-        let direction = vertex.frame.world(drawn.direction);
-        let onwards_normal = direction.dot(point.normal).abs();
-        if drawn.delta {
-            let scale = vertex.shading * onwards_normal / drawn.direction.z.abs();
-            self.flux.iter_mut().zip(&self.value).for_each(|(f, v)| *f *= v * scale);
-            if self.limits.polarisation {
-                let components = |c: &mut [_]| material.polarise(*arriving, drawn.direction, c);
-                self.polarisation.turn(components, [-vertex.back, direction], point.shading, &mut self.flux);
-            } else {
-                self.polarisation.clear();
-            }
-            if drawn.split {
-                self.split();
-            }
-            // A lamp is not sought for a lobe of Dirac's.
-            return Some((direction, Rivals { seeks: 0.0, ..rivals }));
-        }
-        // The function from lamp to camera itself: not all measured ones are the same both ways.
-        material.evaluate(*arriving, drawn.direction, Transport::Radiance, &mut self.value);
-        let scale = vertex.shading * onwards_normal / drawn.pdf;
-        self.flux.iter_mut().zip(&self.value).for_each(|(f, v)| *f *= v * scale);
-        self.polarisation.clear();
-        let onwards = material.pdf(drawn.direction, *arriving, vertex.hero);
-        Some((direction, rivals.after(onwards, drawn.pdf)))
     }
 }

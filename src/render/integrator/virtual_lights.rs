@@ -23,8 +23,7 @@
 
 use glam::DVec3;
 
-use super::frame::Frame;
-use super::packet::{self, Packet};
+use super::packet::{Packet, Vertex};
 use super::path::{Follow, Limits};
 use crate::render::light::shares::Shares;
 use crate::render::material::Transport;
@@ -35,9 +34,9 @@ use crate::render::scene::Scene;
 /// Virtual lights that are drawn for a vertex.
 pub const DRAWS: usize = 2;
 /// Pixels for which one packet is sent.
-const PIXELS: u64 = 4;
+const PIXELS: f64 = 4.0;
 /// Most packets of a set: every sample weighs all that they bring.
-const MOST: u64 = 64;
+const MOST: f64 = 64.0;
 /// So many of them are weighed in the time of a search along a ray, about.
 const WEIGHED: f64 = 100.0;
 /// b N⁻¹ in terms of the area of what is lit: so near an edge is as likely to be found by a path as by one of the packets, about.
@@ -86,7 +85,7 @@ pub struct VirtualLights<'a> {
     strengths: Vec<f64>,
     /// Edges of the path from the lamp to each.
     edges: Vec<u32>,
-    surroundings: Vec<Surrounding>,
+    vertices: Vec<Vertex<'a>>,
     /// The flux that comes to each, per band, over the number of packets.
     fluxes: Vec<f64>,
     value: Vec<f64>,
@@ -110,22 +109,14 @@ impl Sets {
         Self { sampler, packets: 0 }
     }
 
-    /// Makes the next set, for so many pixels: a packet for every four of them, at most 64, which cost less than the pixels' samples.
-    pub fn next(&mut self, lights: &mut VirtualLights<'_>, pixels: usize) {
-        let packets = (pixels as u64 / PIXELS).clamp(1, MOST);
+    /// Makes the next set, for so many pixels of a row of `columns`: a packet for four of them where all have a sample of that number, more for
+    /// each of the few that have many samples, which are the noisy ones; at most 64.
+    pub fn next(&mut self, lights: &mut VirtualLights<'_>, pixels: usize, columns: usize) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        let packets = ((pixels * columns) as f64).sqrt().div_euclid(PIXELS).clamp(1.0, MOST) as u64;
         lights.renew(packets, self.packets, &mut self.sampler);
         self.packets += packets;
     }
-}
-
-/// What else is known of a virtual light.
-#[derive(Debug, Clone, Copy)]
-struct Surrounding {
-    point: SurfacePoint,
-    frame: Frame,
-    /// Where the flux came from, in the frame.
-    arriving: DVec3,
-    surface: usize,
 }
 
 /// A virtual light that was drawn for a point.
@@ -147,12 +138,12 @@ impl<'a> VirtualLights<'a> {
             source,
             heroes,
             most_edges: limits.max_edges.map(|max| max.saturating_sub(2)),
-            packet: Packet::new(scene, limits.polarisation, heroes, &source.shares),
+            packet: Packet::new(scene, *limits, heroes, &source.shares),
             bound: 0.0,
             coordinates: Default::default(),
             strengths: Vec::new(),
             edges: Vec::new(),
-            surroundings: Vec::new(),
+            vertices: Vec::new(),
             fluxes: Vec::new(),
             value: vec![0.0; scene.bands().len()],
             sums: Vec::new(),
@@ -177,43 +168,50 @@ impl<'a> VirtualLights<'a> {
         self.coordinates.iter_mut().for_each(Vec::clear);
         self.strengths.clear();
         self.edges.clear();
-        self.surroundings.clear();
+        self.vertices.clear();
         self.fluxes.clear();
         #[expect(clippy::cast_precision_loss, reason = "a number of packets")]
         let number = packets as f64;
         self.bound = NEARNESS * number / self.source.area;
         for index in first..first + packets {
             sampler.start(index);
-            let Some(mut ray) = self.packet.emit(sampler) else { continue };
+            let Some((mut ray, _)) = self.packet.emit(sampler) else { continue };
             for edges in 1.. {
                 if self.most_edges.is_some_and(|most| edges > most) {
                     break;
                 }
                 self.effort += 1.0;
-                let Some(vertex) = self.packet.arrive(&ray, sampler) else { break };
+                let Some((surface, crossing)) = self.scene.surfaces().closest(&ray, f64::INFINITY) else { break };
+                let Some(vertex) = self.packet.vertex(&ray, surface, &crossing) else { break };
+                self.packet.arrive(&vertex, sampler);
                 if vertex.material.is_diffuse() {
-                    let up = DVec3::new(0.0, 0.0, vertex.arriving.z.signum());
-                    vertex.material.evaluate(vertex.arriving, up, Transport::Radiance, &mut self.value);
-                    let strength = strength(self.packet.flux(), &self.value, self.heroes);
-                    if strength > 0.0 {
-                        let (place, normal) = (vertex.point.position, vertex.point.normal);
-                        let normal = if vertex.back.dot(normal) < 0.0 { -normal } else { normal };
-                        let own = [place.x, place.y, place.z, normal.x, normal.y, normal.z];
-                        self.coordinates.iter_mut().zip(own).for_each(|(all, x)| all.push(x));
-                        self.strengths.push(strength);
-                        self.edges.push(edges);
-                        let packet::Vertex { point, frame, arriving, surface, .. } = vertex;
-                        self.surroundings.push(Surrounding { point, frame, arriving, surface });
-                        self.fluxes.extend(self.packet.flux().iter().map(|flux| flux / number));
-                    }
+                    self.add(vertex, edges, number);
                 }
                 let u = sampler.four();
                 match self.packet.scatter(&vertex, u) {
-                    Some(next) => ray = next,
+                    Some((next, _)) => ray = next,
                     None => break,
                 }
             }
         }
+    }
+
+    /// Adds the vertex that one of so many packets came to, along so many edges.
+    fn add(&mut self, vertex: Vertex<'a>, edges: u32, packets: f64) {
+        let up = DVec3::new(0.0, 0.0, vertex.arriving.z.signum());
+        vertex.material.evaluate(vertex.arriving, up, Transport::Radiance, &mut self.value);
+        let strength = strength(self.packet.flux(), &self.value, self.heroes);
+        if strength == 0.0 {
+            return;
+        }
+        let (place, normal) = (vertex.point.position, vertex.point.normal);
+        let normal = if vertex.back.dot(normal) < 0.0 { -normal } else { normal };
+        let own = [place.x, place.y, place.z, normal.x, normal.y, normal.z];
+        self.coordinates.iter_mut().zip(own).for_each(|(all, x)| all.push(x));
+        self.strengths.push(strength);
+        self.edges.push(edges);
+        self.vertices.push(vertex);
+        self.fluxes.extend(self.packet.flux().iter().map(|flux| flux / packets));
     }
 
     /// Weighs them for a point, `normal` on the side that is seen: those at the end of paths of no more than `edges` edges. Whether there
@@ -258,7 +256,7 @@ impl<'a> VirtualLights<'a> {
             self.sums.partition_point(|end| *end <= u * total).min(self.sums.partition_point(|end| *end < total));
         let below = if index == 0 { 0.0 } else { self.sums[index - 1] };
         let probability = (self.sums[index] - below) / total;
-        let way = self.surroundings[index].point.position - from;
+        let way = self.vertices[index].point.position - from;
         let distance = way.length();
         let direction = way / distance;
         let own = DVec3::new(self.coordinates[3][index], self.coordinates[4][index], self.coordinates[5][index]);
@@ -270,7 +268,7 @@ impl<'a> VirtualLights<'a> {
 
     /// Writes f_y Φ_y, W/(m² sr nm) times m²; `false` where it is not seen from the point.
     pub fn arriving(&self, point: &SurfacePoint, drawn: &Drawn, value: &mut [f64]) -> bool {
-        let Surrounding { point: place, frame, arriving, surface } = &self.surroundings[drawn.index];
+        let Vertex { point: place, frame, material, arriving, .. } = &self.vertices[drawn.index];
         let back = -drawn.direction;
         let outgoing = frame.local(back);
         // A shading normal can send light through the surface: no light goes there.
@@ -286,7 +284,7 @@ impl<'a> VirtualLights<'a> {
         if !touches && self.scene.surfaces().is_occluded(&Ray { origin, direction }, distance, None) {
             return false;
         }
-        self.scene.material(*surface).evaluate(*arriving, outgoing, Transport::Radiance, value);
+        material.evaluate(*arriving, outgoing, Transport::Radiance, value);
         let fluxes = &self.fluxes[drawn.index * value.len()..];
         value.iter_mut().zip(fluxes).for_each(|(v, f)| *v *= f);
         true
