@@ -9,7 +9,7 @@ use crate::render::build::{Built, Kind};
 use crate::render::estimate::Figure;
 use crate::render::goniophotometer::Measured;
 use crate::render::gonioreflectometer;
-use crate::render::integrator::path::Follow;
+use crate::render::integrator::limits::Follow;
 use crate::render::integrator::virtual_lights::Source;
 use crate::render::radiosity::Summary;
 use crate::render::reading::{Points, Reading, Spectral};

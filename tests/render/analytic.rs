@@ -7,7 +7,7 @@ use photopic::brdf::lambert::Lambert;
 use photopic::render::bands::Bands;
 use photopic::render::emission::Emission;
 use photopic::render::estimate::Figure;
-use photopic::render::integrator::path::{Follow, Limits};
+use photopic::render::integrator::limits::{Follow, Limits};
 use photopic::render::light::Light;
 use photopic::render::light::bounding::BoundingSphere;
 use photopic::render::light::environment::Environment;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use photopic::brdf::lambert::Lambert;
 use photopic::render::audit::bias;
 use photopic::render::audit::energy::{self, Energy};
-use photopic::render::integrator::path::{Follow, Limits};
+use photopic::render::integrator::limits::{Follow, Limits};
 use photopic::render::light::Light;
 use photopic::render::light::point::Point;
 use photopic::render::material::opaque::Opaque;

@@ -3,26 +3,13 @@
 
 use std::f64::consts::PI;
 
-use photopic::render::build::{Built, Kind, NoFiles, build};
-use photopic::render::description::Description;
+use photopic::render::build::Built;
 use photopic::render::film::Film;
 use photopic::render::noise::Noise;
 use photopic::render::sensor::camera::Camera;
 
 use crate::cli::{json, photopic};
-
-pub(crate) fn built(text: &str) -> Built {
-    let description = Description::parse(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    build(text, &description, &NoFiles).unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
-fn camera(built: &Built) -> &Camera {
-    let found = built.instruments.iter().find_map(|i| match &i.kind {
-        Kind::Camera(camera) => Some(camera),
-        _ => None,
-    });
-    found.expect("a camera")
-}
+use crate::pictures::{built, camera, figure};
 
 /// All channels of all pixels, row by row, and the noise.
 fn picture(built: &Built, seed: u64, samples: u64) -> (Vec<f32>, Noise) {
@@ -48,13 +35,6 @@ fn means(pixels: &[f32], camera: &Camera) -> Vec<f64> {
         means[place % channels] += row.iter().map(|v| f64::from(*v)).sum::<f64>();
     }
     means.iter().map(|m| m / camera.pixels()).collect()
-}
-
-/// Mean and standard error of independent numbers.
-pub(crate) fn figure(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt())
 }
 
 /// A pane of glass between parallel light and a floor, and the camera below it. With four edges a path is lamp, pane in, pane out, floor,

@@ -6,7 +6,7 @@ use glam::DVec3;
 use photopic::brdf::lambert::Lambert;
 use photopic::render::bands::Bands;
 use photopic::render::emission::Emission;
-use photopic::render::integrator::path::Limits;
+use photopic::render::integrator::limits::Limits;
 use photopic::render::material::opaque::Opaque;
 use photopic::render::measure::{Board, Meter, Place, Settings, Target};
 use photopic::render::ray::SurfacePoint;

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec2, DVec3};
 use photopic::luminaire::placement::{Orientation, Placement};
 use photopic::luminaire::{Distribution, Symmetry, System};
 use photopic::render::estimate::Figure;
-use photopic::render::integrator::path::Limits;
+use photopic::render::integrator::limits::Limits;
 use photopic::render::light::Light;
 use photopic::render::light::barzel::{Barzel, Controls};
 use photopic::render::light::bounding::BoundingSphere;

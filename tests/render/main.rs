@@ -16,6 +16,7 @@ mod lights;
 mod meshes;
 mod meters_from_lights;
 mod packets;
+mod pictures;
 mod radiosity;
 mod reflectometer;
 mod scenes;

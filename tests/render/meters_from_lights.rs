@@ -10,7 +10,8 @@ use photopic::render::ray::Ray;
 use photopic::render::sampler::Sampler;
 use photopic::render::spool::Share;
 
-use crate::bidirectional::{built, figure, scenes};
+use crate::bidirectional::scenes;
+use crate::pictures::{built, figure};
 
 /// All meters of a scene, one behind the other, with numbers of their own.
 fn meters(built: &Built) -> Vec<(u64, Meter)> {

@@ -4,26 +4,14 @@
 use std::f64::consts::PI;
 
 use photopic::image::source::{Region, Source};
-use photopic::render::build::{Built, Kind, NoFiles, build};
-use photopic::render::description::Description;
+use photopic::render::build::Built;
 use photopic::render::film::Film;
 use photopic::render::integrator::virtual_lights;
 use photopic::render::measure::Settings;
 use photopic::render::noise::Noise;
 use photopic::render::sensor::camera::Camera;
 
-fn built(text: &str) -> Built {
-    let description = Description::parse(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    build(text, &description, &NoFiles).unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
-fn camera(built: &Built) -> &Camera {
-    let found = built.instruments.iter().find_map(|i| match &i.kind {
-        Kind::Camera(camera) => Some(camera),
-        _ => None,
-    });
-    found.expect("a camera")
-}
+use crate::pictures::{built, camera, figure};
 
 fn settings(built: &Built, seed: u64, virtual_lights: Option<bool>) -> Settings {
     Settings { seed, virtual_lights, ..built.settings.clone() }
@@ -41,13 +29,6 @@ fn picture(built: &Built, settings: &Settings, samples: u64) -> (Vec<f32>, Noise
         pixels.extend(samples);
     }
     (pixels, noise)
-}
-
-/// Mean and standard error of independent numbers.
-fn figure(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt())
 }
 
 /// Means over blocks of the picture of each channel: `blocks` along each side.

@@ -22,7 +22,7 @@ use super::bands::Bands;
 use super::description::spectrum::SpectrumSource;
 use super::description::{Carried, Description, Error, Model, Solver};
 use super::format::Object;
-use super::integrator::path::{Follow, Limits};
+use super::integrator::limits::{Follow, Limits};
 use super::light::Light;
 use super::light::bounding::BoundingSphere;
 use super::measure::Settings;

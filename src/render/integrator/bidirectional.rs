@@ -42,8 +42,8 @@
 use glam::DVec3;
 
 use super::frame::Frame;
+use super::limits::Limits;
 use super::packet::{Origin, Packet, Vertex};
-use super::path::Limits;
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
 use crate::render::material::Transport;

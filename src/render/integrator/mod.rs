@@ -9,6 +9,7 @@
 pub mod bidirectional;
 pub mod frame;
 pub mod light;
+pub mod limits;
 pub mod packet;
 pub mod path;
 pub mod polarisation;

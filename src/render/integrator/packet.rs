@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::frame::Frame;
-use super::path::Limits;
+use super::limits::Limits;
 use super::polarisation::Polarisation;
 use crate::math::sampling;
 use crate::render::light::shares::Shares;

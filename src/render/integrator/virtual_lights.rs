@@ -23,8 +23,8 @@
 
 use glam::DVec3;
 
+use super::limits::{Follow, Limits};
 use super::packet::{Packet, Vertex};
-use super::path::{Follow, Limits};
 use crate::render::light::shares::Shares;
 use crate::render::material::Transport;
 use crate::render::ray::{Ray, SurfacePoint};
