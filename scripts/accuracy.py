@@ -11,7 +11,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import glossy_sphere
@@ -48,8 +48,8 @@ class Trade:
     picture: str
     # Of a scene the figures are its sensors.
     option: str = "--figure"
-    # What stands in the place of `words` where the input is made here.
-    arguments: list[str] = field(default_factory=list)
+    # Where it is typed: where the input is.
+    folder: Path = ROOT
     repeats: int = 11
 
 
@@ -95,7 +95,7 @@ def chapters(folder: Path) -> dict[str, tuple[str, list[Trade]]]:
         ),
         "Spectral images": (
             "A picture of `data/scenes/cornell.toml` by 5 nm: `wavelength_step_nm = 5` in a file of settings, `photopic render data/scenes/cornell.toml --samples 16 --settings fine.toml`.",
-            [Trade("a room", "image", "cornell.exr", IMAGE, "image-1", arguments=[str(cube(folder))], repeats=3)],
+            [Trade("a room", "image", "cornell.exr", IMAGE, "image-1", folder=cube(folder), repeats=3)],
         ),
         "Readings of scenes": (
             "",
@@ -113,31 +113,32 @@ def chapters(folder: Path) -> dict[str, tuple[str, list[Trade]]]:
         ),
         "Photographs of a glossy sphere": (
             "0.2 + GGX of α = 0.25 under ten lights in three exposures, made by `scripts/glossy_sphere.py`. Errors are relative to all photographs with all of their pixels.",
-            [Trade("a sphere", "capture", "capture.toml -m 'lambert + ggx'", CAPTURE, "capture-1", arguments=[str(sphere(folder)), "-m", "lambert + ggx"], repeats=1)],
+            [Trade("a sphere", "capture", "capture.toml -m 'lambert + ggx'", CAPTURE, "capture-1", folder=sphere(folder), repeats=1)],
         ),
     }
 
 
 def cube(folder: Path) -> Path:
-    """The room by 5 nm."""
+    """The room by 5 nm; the folder with `cornell.exr`."""
     settings = folder / "fine.toml"
     settings.write_text("[render]\nwavelength_step_nm = 5\n", encoding="utf-8")
     scene = ROOT / "data" / "scenes" / "cornell.toml"
     command = [PROGRAM, "render", scene, "--samples", "16", "--settings", settings, "--folder", folder, "--packets", "0", "--quiet"]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return next(folder.glob("*.exr"))
+    next(folder.glob("*.exr")).rename(folder / "cornell.exr")
+    return folder
 
 
 def sphere(folder: Path) -> Path:
+    """The folder with `capture.toml`."""
     glossy_sphere.make(folder)
-    return folder / "capture.toml"
+    return folder
 
 
 def run(trade: Trade, *more: str) -> dict:
     """The result; exit code 1 says that no setting meets the error, which is an answer."""
-    arguments = trade.arguments or shlex.split(trade.words)
-    command = [PROGRAM, "trade", trade.verb, *arguments, "--repeats", str(trade.repeats), *more, "--json", "--quiet"]
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=False)
+    command = [PROGRAM, "trade", trade.verb, *shlex.split(trade.words), "--repeats", str(trade.repeats), *more, "--json", "--quiet"]
+    done = subprocess.run(command, cwd=trade.folder, stdout=subprocess.PIPE, check=False)
     if done.returncode not in (0, 1):
         raise SystemExit(f"{' '.join(command)}: exit code {done.returncode}")
     return json.loads(done.stdout)["results"][0]
