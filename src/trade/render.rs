@@ -12,7 +12,7 @@
 //! | `wavelengths_per_path` | all; one, drawn for each path (hero wavelength) |
 //! | `model` | what the scene requires, or everything |
 //!
-//! Meters are read by paths from them whatever the solver of pictures: `bidirectional` reads as `path` does and is not tried.
+//! `bidirectional` is not tried: what it is for, light that glass and mirrors throw on a meter, paths miss however many there are.
 //! Here a path with one wavelength takes about the time of one with all; what fewer wavelengths save is seen where there are 8.
 //!
 //! All but the samples are turned one at a time, at a sixteenth of the scene's samples.
