@@ -72,7 +72,7 @@ enum Command {
     /// What speed costs in accuracy, measured on an input: settings timed and compared, and the fastest that meets an error.
     #[command(subcommand)]
     Trade(trade::TradeCommand),
-    /// The simplest model that carries a scene, a lamp, a spectrum, a material or a spectral image within an error, and the error of a
+    /// The simplest model that carries a scene, a lamp, a spectrum, a material, a spectral image or photographs within an error, and the error of a
     /// simpler one; exit code 1 where none does.
     Require(Box<require::RequireArgs>),
     /// Extremes and reference cases, run on this machine: from 1 K to 10⁹ K, from 1e-300 to 1e300 W, grazing angles, tiny and huge scenes;

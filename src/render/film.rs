@@ -243,17 +243,19 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let stream = |x: usize| stream(self.instrument + streams, y * width + x);
         if tracer.virtual_lights().is_none() {
             for x in columns {
-                let mut sampler = self.settings.sampler(stream(x));
+                let own = stream(x);
+                let mut sampler = self.settings.sampler(own);
                 for index in 0..number(x) {
                     sampler.start(index);
-                    take(x, (stream(x), index), self.sample(tracer, x, y, &mut sampler));
+                    take(x, (own, index), self.sample(tracer, x, y, &mut sampler));
                 }
             }
             return;
         }
         // The sets are those of the whole row, whichever part of it is rendered.
         let numbers: Vec<u64> = (0..width).map(number).collect();
-        let mut samplers: Vec<Sampler> = columns.clone().map(|x| self.settings.sampler(stream(x))).collect();
+        let own = |x| (x, stream(x), self.settings.sampler(stream(x)));
+        let mut pixels: Vec<(usize, u64, Sampler)> = columns.map(own).collect();
         let mut sets = virtual_lights::Sets::new(
             self.settings.sampler(estimate::stream(self.instrument + (streams ^ VIRTUAL), y)),
         );
@@ -261,9 +263,9 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             if let Some(lights) = tracer.virtual_lights() {
                 sets.next(lights, numbers.iter().filter(|n| **n > index).count(), width);
             }
-            for (x, sampler) in columns.clone().zip(&mut samplers).filter(|(x, _)| numbers[*x] > index) {
+            for (x, own, sampler) in pixels.iter_mut().filter(|(x, ..)| numbers[*x] > index) {
                 sampler.start(index);
-                take(x, (stream(x), index), self.sample(tracer, x, y, sampler));
+                take(*x, (*own, index), self.sample(tracer, *x, y, sampler));
             }
         }
     }

@@ -9,21 +9,15 @@ use photopic::render::noise::Noise;
 use photopic::render::sensor::camera::Camera;
 
 use crate::cli::{json, photopic};
-use crate::pictures::{built, camera, figure};
+use crate::pictures::{ROOM, built, camera, figure, rendered};
 
 /// All channels of all pixels, row by row, and the noise.
 fn picture(built: &Built, seed: u64, samples: u64) -> (Vec<f32>, Noise) {
     let camera = camera(built);
     let mut settings = built.settings.clone();
     settings.seed = seed;
-    let mut film = Film::new(&built.scene, camera, &settings, 0, samples, &built.quantities.tristimulus, |_| ());
-    let rows: Vec<usize> = (0..camera.height() as usize).collect();
-    let (mut noise, mut pixels) = (Noise::default(), Vec::new());
-    for (row, samples) in film.rows(&rows) {
-        noise.append(&row);
-        pixels.extend(samples);
-    }
-    (pixels, noise)
+    let film = Film::new(&built.scene, camera, &settings, 0, samples, &built.quantities.tristimulus, |_| ());
+    rendered(film)
 }
 
 /// Mean over the picture of each channel.
@@ -97,21 +91,6 @@ camera = {{ at = [0, 0, 0.6], look_at = [0, 0, 0], up = [0, 1, 0], resolution = 
 
 /// Rooms with every kind of light and surface that paths from both ends can meet.
 pub(crate) fn scenes() -> Vec<(&'static str, String)> {
-    let room = r#"
-[[material]]
-name = "white"
-reflectance = 0.7
-[[material]]
-name = "red"
-reflectance = [[400, 0.1], [600, 0.2], [650, 0.8], [830, 0.8]]
-[[shape]]
-name = "floor"
-material = "white"
-rectangle = { corner = [-2, -2, 0], edges = [[4, 0, 0], [0, 4, 0]] }
-[[shape]]
-material = "red"
-rectangle = { corner = [-2, 2, 0], edges = [[4, 0, 0], [0, 0, 3]] }
-"#;
     let lamp = r#"
 [[shape]]
 emission = { radiance = "1000 cd/m2", spectrum = "D65" }
@@ -135,15 +114,15 @@ rectangle = { corner = [-1, -1, 2.5], edges = [[0, 2, 0], [2, 0, 0]] }
     ]
     .concat();
     vec![
-        ("lamp", [room, lamp].concat()),
-        ("glass", [room, lamp, &glass].concat()),
-        ("ground glass", [room, lamp, &ball("dielectric = { index = 1.5, alpha = 0.3 }")].concat()),
-        ("mirror", [room, lamp, &ball("metal = { medium = \"Ag\" }")].concat()),
-        ("dye", [room, lamp, &ball(dye)].concat()),
-        ("sky", [room, sky, &glass].concat()),
-        ("mixture", [room, lamp, &mixture].concat()),
-        ("sun", [room, sun].concat()),
-        ("spot", [room, spot, &ball("reflectance = 0.5")].concat()),
+        ("lamp", [ROOM, lamp].concat()),
+        ("glass", [ROOM, lamp, &glass].concat()),
+        ("ground glass", [ROOM, lamp, &ball("dielectric = { index = 1.5, alpha = 0.3 }")].concat()),
+        ("mirror", [ROOM, lamp, &ball("metal = { medium = \"Ag\" }")].concat()),
+        ("dye", [ROOM, lamp, &ball(dye)].concat()),
+        ("sky", [ROOM, sky, &glass].concat()),
+        ("mixture", [ROOM, lamp, &mixture].concat()),
+        ("sun", [ROOM, sun].concat()),
+        ("spot", [ROOM, spot, &ball("reflectance = 0.5")].concat()),
     ]
 }
 

@@ -1,7 +1,10 @@
 //! What tests of pictures have in common.
 
+use photopic::image::source::Source;
 use photopic::render::build::{Built, Kind, NoFiles, build};
 use photopic::render::description::Description;
+use photopic::render::film::Film;
+use photopic::render::noise::Noise;
 use photopic::render::sensor::camera::Camera;
 
 pub fn built(text: &str) -> Built {
@@ -22,4 +25,32 @@ pub fn figure(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt())
+}
+
+/// A white floor and a red wall.
+pub const ROOM: &str = r#"
+[[material]]
+name = "white"
+reflectance = 0.7
+[[material]]
+name = "red"
+reflectance = [[400, 0.1], [600, 0.2], [650, 0.8], [830, 0.8]]
+[[shape]]
+name = "floor"
+material = "white"
+rectangle = { corner = [-2, -2, 0], edges = [[4, 0, 0], [0, 4, 0]] }
+[[shape]]
+material = "red"
+rectangle = { corner = [-2, 2, 0], edges = [[4, 0, 0], [0, 0, 3]] }
+"#;
+
+/// All channels of all pixels, row by row, and the noise.
+pub fn rendered<F: Fn(u64) + Send + Sync>(mut film: Film<'_, F>) -> (Vec<f32>, Noise) {
+    let rows: Vec<usize> = (0..film.description().height).collect();
+    let (mut noise, mut pixels) = (Noise::default(), Vec::new());
+    for (row, samples) in film.rows(&rows) {
+        noise.append(&row);
+        pixels.extend(samples);
+    }
+    (pixels, noise)
 }

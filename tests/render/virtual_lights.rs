@@ -11,7 +11,7 @@ use photopic::render::measure::Settings;
 use photopic::render::noise::Noise;
 use photopic::render::sensor::camera::Camera;
 
-use crate::pictures::{built, camera, figure};
+use crate::pictures::{ROOM, built, camera, figure, rendered};
 
 fn settings(built: &Built, seed: u64, virtual_lights: Option<bool>) -> Settings {
     Settings { seed, virtual_lights, ..built.settings.clone() }
@@ -22,13 +22,7 @@ fn picture(built: &Built, settings: &Settings, samples: u64) -> (Vec<f32>, Noise
     let camera = camera(built);
     let mut film = Film::new(&built.scene, camera, settings, 0, samples, &built.quantities.tristimulus, |_| ());
     film.survey(false);
-    let rows: Vec<usize> = (0..camera.height() as usize).collect();
-    let (mut noise, mut pixels) = (Noise::default(), Vec::new());
-    for (row, samples) in film.rows(&rows) {
-        noise.append(&row);
-        pixels.extend(samples);
-    }
-    (pixels, noise)
+    rendered(film)
 }
 
 /// Means over blocks of the picture of each channel: `blocks` along each side.
@@ -45,19 +39,8 @@ fn blocks(pixels: &[f32], camera: &Camera, blocks: usize) -> Vec<f64> {
     sums
 }
 
-const ROOM: &str = r#"
-[[material]]
-name = "white"
-reflectance = 0.7
-[[material]]
-name = "red"
-reflectance = [[400, 0.1], [600, 0.2], [650, 0.8], [830, 0.8]]
-[[shape]]
-material = "white"
-rectangle = { corner = [-2, -2, 0], edges = [[4, 0, 0], [0, 4, 0]] }
-[[shape]]
-material = "red"
-rectangle = { corner = [-2, 2, 0], edges = [[4, 0, 0], [0, 0, 3]] }
+/// Beside the room's floor and red wall.
+const WALL: &str = r#"
 [[shape]]
 material = "white"
 rectangle = { corner = [-2, -2, 0], edges = [[0, 4, 0], [0, 0, 3]] }
@@ -166,7 +149,8 @@ fn pictures_are_those_of_the_path_tracer() {
         // Caustics of a spot are no path's to find: balls that throw some are lit by the lamp with an extent.
         let kinds: &[usize] = if number < 4 { &[0, 1, 2] } else { &[0] };
         for lamp in kinds {
-            let text = format!("[render]\nwavelength_step_nm = 60\n{limit}\n{ROOM}{shapes}{}{VIEW}", lamps[*lamp]);
+            let text =
+                format!("[render]\nwavelength_step_nm = 60\n{limit}\n{ROOM}{WALL}{shapes}{}{VIEW}", lamps[*lamp]);
             let built = built(&text);
             let parts = |virtual_lights, first: u64| -> Vec<Vec<f64>> {
                 (first..first + 16)
@@ -190,7 +174,7 @@ fn pictures_are_those_of_the_path_tracer() {
 /// The standard error of a picture's mean, to which all pixels of a row contribute together: the scatter over seeds.
 #[test]
 fn the_error_of_the_mean_is_what_it_scatters() {
-    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{LAMP}{VIEW}"));
+    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{WALL}{LAMP}{VIEW}"));
     let all: Vec<Noise> = (0..64).map(|seed| picture(&built, &settings(&built, seed, Some(true)), 32).1).collect();
     let (_, error) = figure(&all.iter().map(|noise| noise.luminance).collect::<Vec<_>>());
     let scatter = error * 8.0;
@@ -202,7 +186,7 @@ fn the_error_of_the_mean_is_what_it_scatters() {
 
 #[test]
 fn a_part_of_a_picture_is_that_of_the_whole() {
-    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{LAMP}{VIEW}"));
+    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{WALL}{LAMP}{VIEW}"));
     let settings = settings(&built, 3, None);
     let mut film = Film::new(&built.scene, camera(&built), &settings, 0, 20, &built.quantities.tristimulus, |_| ());
     film.survey(true);
@@ -217,19 +201,34 @@ fn a_part_of_a_picture_is_that_of_the_whole() {
     }
 }
 
-/// They are taken where they pay, and left where they cannot stand for all light between diffuse surfaces.
+/// A room lit by a spot on its floor is rendered by them, a floor under an open sky by paths alone.
+#[test]
+fn they_are_taken_where_they_pay() {
+    let spot = "[[light]]\nspectrum = \"A\"\nspot = { at = [0, 0, 2.5], aim = [0, 0, 0], half_angle = \"15 deg\", intensity = \"1000 cd\" }\n";
+    let ceiling =
+        "[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [-2, -2, 3], edges = [[0, 4, 0], [4, 0, 0]] }\n";
+    let sky = "[[light]]\nspectrum = \"D65\"\nenvironment = { radiance = \"1 W/m2/sr/nm\" }\n";
+    for (scene, pays) in [(format!("{ROOM}{WALL}{ceiling}{spot}{VIEW}"), true), (format!("{ROOM}{sky}{VIEW}"), false)] {
+        let built = built(&format!("[render]\nwavelength_step_nm = 100\n{scene}"));
+        let with = |virtual_lights| picture(&built, &settings(&built, 3, virtual_lights), 16).0;
+        assert!(with(Some(true)) != with(Some(false)));
+        assert!(with(None) == with(Some(pays)), "{pays}");
+    }
+}
+
+/// They are left where they cannot stand for all light between diffuse surfaces.
 #[test]
 fn scenes_that_they_suit_are_told_from_others() {
     let suits = |text: &str| {
         let built = built(text);
         virtual_lights::Source::of(&built.scene, &built.settings.limits).is_some()
     };
-    assert!(suits(&format!("{ROOM}{LAMP}{VIEW}")));
-    assert!(!suits(&format!("[render]\nmax_edges = 2\n{ROOM}{LAMP}{VIEW}")));
-    assert!(!suits(&format!("[render]\nsolver = \"whitted\"\n{ROOM}{LAMP}{VIEW}")));
+    assert!(suits(&format!("{ROOM}{WALL}{LAMP}{VIEW}")));
+    assert!(!suits(&format!("[render]\nmax_edges = 2\n{ROOM}{WALL}{LAMP}{VIEW}")));
+    assert!(!suits(&format!("[render]\nsolver = \"whitted\"\n{ROOM}{WALL}{LAMP}{VIEW}")));
     // Packets of the sky come to what is bounded alone.
     let ground = "[[shape]]\nmaterial = \"white\"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n";
-    assert!(!suits(&format!("{ROOM}{LAMP}{ground}{VIEW}")));
+    assert!(!suits(&format!("{ROOM}{WALL}{LAMP}{ground}{VIEW}")));
     let mirrors = "[[material]]\nname = \"mirror\"\nmetal = { medium = \"Ag\" }\n[[shape]]\nmaterial = \"mirror\"\nsphere = { centre = [0, 0, 0], radius = \"1 m\" }\n";
     assert!(!suits(&format!("{mirrors}{VIEW}")));
 }
