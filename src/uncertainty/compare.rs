@@ -116,10 +116,20 @@ mod tests {
 
     impl Measured {
         fn new(values: Vec<f64>, text: &str) -> Self {
+            let text = format!("{text}\nmonte_carlo = {{ trials = 1000 }}");
+            Self::of(values, &Budget::parse(&text, |_| Err("none".into())).expect("a budget"))
+        }
+
+        /// Flat, with a table that the budget names.
+        fn with_table(text: &str, table: &str) -> Self {
+            let text = format!("{text}\nmonte_carlo = {{ trials = 1000 }}");
+            Self::of(vec![1.0; 81], &Budget::parse(&text, |_| Ok(table.to_owned())).expect("a budget"))
+        }
+
+        fn of(values: Vec<f64>, budget: &Budget) -> Self {
             let grid = Grid::uniform(380.0, 5.0, 81).expect("ascending");
             let spectrum = Spectrum::density(grid, values).expect("finite");
-            let text = format!("{text}\nmonte_carlo = {{ trials = 1000 }}");
-            let budget = Budget::parse(&text, |_| Err("none".into())).expect("a budget");
+            let budget = budget.clone();
             let found = evaluate(&luminous(), &budget, Quantity::Irradiance, &spectrum).expect("evaluates");
             Self { budget, spectrum, uncertainty: found.value }
         }
@@ -178,14 +188,50 @@ mod tests {
         }
     }
 
+    /// Of a scale of 2 % that both share and one of 1 % of their own the difference keeps 2 % of itself and 1 % of each, however often the shared one
+    /// is named.
+    #[test]
+    fn what_is_named_twice_is_shared_once() {
+        let text = "scale = [{ name = \"lamp\", relative = 0.02 }, { name = \"own\", relative = 0.01 }]";
+        let (a, b) = (Measured::new(vec![1.0; 81], text), Measured::new(vec![1.5; 81], text));
+        for shared in [&["lamp"][..], &["lamp", "lamp"]] {
+            let d = lux(&a, &b, shared);
+            let (a, b) = (d.a.0, d.b.0);
+            let standard = ((0.02 * (a - b)).powi(2) + 0.01_f64.powi(2) * (a * a + b * b)).sqrt();
+            let want = 1.959_963_984_540_054 * standard;
+            assert!((d.expanded / want - 1.0).abs() < 1e-9, "{shared:?}: {} {want}", d.expanded);
+        }
+    }
+
     #[test]
     fn what_is_not_shared_is_refused() {
-        let a = Measured::new(vec![1.0; 81], "scale = [{ name = \"lamp\", relative = 0.02 }]");
-        let chain = "calibration = [{ name = \"lamp\", relative = 0.02, correlation_length_nm = 40 }]";
-        let b = Measured::new(vec![1.1; 81], chain);
-        let refused =
-            |name: &str| correlations(&luminous(), a.side(), b.side(), &[name.to_owned()]).expect_err("refused");
-        assert!(matches!(refused("lamp"), SharedError::Modes { .. }));
-        assert!(matches!(refused("slit"), SharedError::Unknown { .. }));
+        let with = |calibration: &str| format!("calibration = [{{ name = \"lamp\", {calibration} }}]");
+        let chain = |length: f64| with(&format!("relative = 0.02, correlation_length_nm = {length}"));
+        let measured = |text: &str| Measured::new(vec![1.0; 81], text);
+        let a = measured("scale = [{ name = \"lamp\", relative = 0.02 }]");
+        let b = measured(&chain(40.0));
+        let found = |a: &Measured, b: &Measured, name: &str| {
+            correlations(&luminous(), a.side(), b.side(), &[name.to_owned()]).map(|_| ())
+        };
+        let modes = Err(SharedError::Modes { name: "lamp".to_owned() });
+        assert_eq!(found(&a, &b, "lamp"), modes);
+        assert!(matches!(found(&a, &b, "slit"), Err(SharedError::Unknown { .. })));
+        // Neighbours that err alike over 40 nm in one are not those of 80 nm; how much they err may differ.
+        assert_eq!(found(&measured(&chain(80.0)), &b, "lamp"), modes);
+        let less = with("relative = 0.01, correlation_length_nm = 40");
+        assert_eq!(found(&measured(&less), &b, "lamp"), Ok(()));
+        let noise = measured("noise = [{ name = \"lamp\", relative = 0.02 }]");
+        assert!(matches!(found(&a, &noise, "lamp"), Err(SharedError::Noise { of: "B", .. })));
+        // Which of two is meant is not known.
+        let two = "scale = [{ name = \"lamp\", relative = 0.02 }, { name = \"lamp\", relative = 0.01 }]";
+        let count = SharedError::Ambiguous { name: "lamp".to_owned(), of: "A", count: 2 };
+        assert_eq!(found(&measured(two), &a, "lamp"), Err(count));
+        // Covariances of as many modes, but of other ones.
+        let covariance = |off: f64| {
+            let table = format!("nm,400,700\n400,4e-4,{off}\n700,{off},4e-4\n");
+            Measured::with_table(&with("covariance = \"c.csv\""), &table)
+        };
+        assert_eq!(found(&covariance(2e-4), &covariance(2e-4), "lamp"), Ok(()));
+        assert_eq!(found(&covariance(2e-4), &covariance(-2e-4), "lamp"), modes);
     }
 }

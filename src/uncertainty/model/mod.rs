@@ -260,6 +260,27 @@ impl Model {
         }
     }
 
+    /// Whether a contribution is noise, drawn anew for every sample of every measurement.
+    pub(super) fn is_noise(&self, index: usize) -> bool {
+        matches!(self.inputs[index].kind, Kind::Noise(_))
+    }
+
+    /// Whether a contribution can be one and the same error as one of another model: a single error always can; errors that differ from sample to
+    /// sample only where their modes are the same, each the cause of the same in both.
+    pub(super) fn has_modes_of(&self, index: usize, other: &Self, its: usize) -> bool {
+        let same_samples = self.wavelengths_nm == other.wavelengths_nm;
+        match (&self.inputs[index].kind, &other.inputs[its].kind) {
+            (Kind::Together(..) | Kind::Number(..), Kind::Together(..) | Kind::Number(..)) => true,
+            (Kind::Chain { correlation, .. }, Kind::Chain { correlation: its, .. }) => {
+                same_samples && correlation == its
+            }
+            (Kind::Modes(modes), Kind::Modes(its)) | (Kind::AbsoluteModes(modes), Kind::AbsoluteModes(its)) => {
+                same_samples && modes == its
+            }
+            _ => false,
+        }
+    }
+
     /// The slope at a sample. At the ends, beyond which the spectrum is held, it is that of the middle between both sides.
     fn slope(&self, i: usize) -> f64 {
         if i == 0 || i + 1 == self.values.len() { 0.5 * self.slopes[i] } else { self.slopes[i] }
