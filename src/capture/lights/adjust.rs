@@ -122,14 +122,17 @@ struct Network<'a> {
 /// Adjusts all that is told.
 ///
 /// # Errors
-/// [`Error::Singular`] where an observation has no meaning, such as a highlight beside its ball.
+/// [`Error::Singular`] where an observation has no meaning, such as a highlight beside its ball, or without a ball.
 pub fn adjust(view: View, starts: &[Start], places: &[Place], observations: &[Observation]) -> Result<Adjusted, Error> {
+    let wrong = Error::Singular { what: "balls and lights" };
+    if starts.is_empty() {
+        return Err(wrong);
+    }
     let moves = view.camera.is_some() && starts.iter().any(|s| s.stated && s.outline.is_some());
     let network = Network { view, starts, places, observations, moves };
     let start = vec![0.0; network.unknowns()];
     let limits = Limits { iterations: 100, step: 1e-9, gain: 1e-12 };
     let (low, high) = (vec![f64::NEG_INFINITY; start.len()], vec![f64::INFINITY; start.len()]);
-    let wrong = Error::Singular { what: "balls and lights" };
     let found = minimise(&network, &start, &low, &high, &limits).ok_or_else(|| wrong.clone())?;
     let (view, balls, lights) = network.unpack(&found.x);
     let all: Vec<usize> = (0..start.len()).collect();
@@ -143,8 +146,10 @@ pub fn adjust(view: View, starts: &[Start], places: &[Place], observations: &[Ob
         (off * sigma).to_degrees()
     });
     let off_deg = off_deg.collect();
-    let unknown: usize = places.iter().map(|p| network.numbers(p)).sum();
-    let freedom = (2 * observations.len()).saturating_sub(unknown);
+    // Light by light: what one light has to spare tells nothing of another that its observations do not determine.
+    let freedom: usize = (places.iter().enumerate())
+        .map(|(k, p)| (2 * observations.iter().filter(|o| o.light == k).count()).saturating_sub(network.numbers(p)))
+        .sum();
     let square: f64 = told.iter().map(|r| r * r).sum();
     let errors_deg = (0..places.len()).map(|k| network.error_deg(&found.x, &inverse, k)).collect();
     Ok(Adjusted {
