@@ -35,9 +35,9 @@ pub fn capture(
     let simplest: Template = MODELS[0].parse().map_err(|e| CaptureError::Measure(format!("{}: {e}", MODELS[0])))?;
     // Fewer photographs with all of their pixels, fewer pixels of all photographs.
     let all = |c: &Choice| (c.lights, c.exposures) == (lights, exposures);
-    let tried = choices(lights, exposures).into_iter().filter(|c| c.every == 1 || all(c)).collect();
+    let tried: Vec<Choice> = choices(lights, exposures).into_iter().filter(|c| c.every == 1 || all(c)).collect();
     let mut pixel_variance_sd = None;
-    let found = compare(tried, |choice| {
+    let found = compare(tried.clone(), |choice| {
         let measured = measure(choice);
         if let Ok((_, sd)) = &measured {
             pixel_variance_sd.get_or_insert(*sd);
@@ -46,25 +46,27 @@ pub fn capture(
     })?;
     let own = found.reference_errors[MEDIAN];
     let finest = &found.outcomes[0];
-    let bound = |i: usize| Some(found.errors[i][MEDIAN]?.high + own?);
+    // None of a choice that gave nothing: its rung stands, and is not enough.
+    let bound = |choice: &Choice| {
+        let place = found.choices.iter().position(|c| c == choice)?;
+        Some(found.errors[place][MEDIAN]?.high + own?)
+    };
     let figure = "f_r in bins of half and difference angles, the median";
     let mut out = Vec::new();
     // The first is the finest, so that from the last on they become more.
-    let mut order: Vec<usize> = (0..found.choices.len()).filter(|i| found.choices[*i].every == 1).collect();
-    order.sort_by_key(|i| found.choices[*i].lights * found.choices[*i].exposures);
-    let photographs = order.into_iter().map(|i| {
-        let Choice { lights, exposures, .. } = found.choices[i];
-        Rung { model: format!("{lights} lights, {exposures} exposures of each"), error: bound(i) }
+    let mut photographs: Vec<&Choice> = tried.iter().filter(|c| c.every == 1).collect();
+    photographs.sort_by_key(|c| c.lights * c.exposures);
+    let photographs = photographs.into_iter().map(|choice| {
+        let Choice { lights, exposures, .. } = choice;
+        Rung { model: format!("{lights} lights, {exposures} exposures of each"), error: bound(choice) }
     });
     out.push(Requirement::new("photographs", figure, photographs.collect(), most));
-    let mut pixels: Vec<usize> = (0..found.choices.len()).filter(|i| all(&found.choices[*i])).collect();
-    pixels.reverse();
-    let pixels = pixels.into_iter().map(|i| {
-        let model = match found.choices[i].every {
+    let pixels = tried.iter().filter(|c| all(c)).rev().map(|choice| {
+        let model = match choice.every {
             1 => "every pixel".to_owned(),
             n => format!("every {0} pixel of every {0} row", nth(n)),
         };
-        Rung { model, error: bound(i) }
+        Rung { model, error: bound(choice) }
     });
     out.push(Requirement::new("pixels", figure, pixels.collect(), most));
     let bands = finest.all.channels.len();
