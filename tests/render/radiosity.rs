@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use photopic::render::emission::Emission;
 use photopic::render::form_factor::{adjacent_rectangles, coaxial_disks, parallel_rectangles};
 use photopic::render::light::Light;
@@ -14,7 +14,9 @@ use photopic::render::radiosity::{Settings, Solution, Summary, solve};
 use photopic::render::ray::SurfacePoint;
 use photopic::render::scene::{Part, Scene};
 use photopic::render::sensor::response::Response;
+use photopic::render::shape::Shape;
 use photopic::render::shape::disk::Disk;
+use photopic::render::shape::polyhedron::Polyhedron;
 use photopic::render::shape::rectangle::Rectangle;
 use photopic::render::shape::sphere::Sphere;
 use predicates::str::contains;
@@ -127,6 +129,44 @@ fn smaller_patches_converge() {
     let read = |edge| at(&solved(&scene, edge), DVec3::new(0.2, 0.1, -1.0), DVec3::Z);
     let [a, b, c] = [1.0, 0.5, 0.25].map(read);
     assert!((c - b).abs() < 0.5 * (b - a).abs(), "{a} {b} {c}");
+}
+
+/// In a closed room whose walls and blocks all have the exitance M and the reflectance ρ the irradiance is M/(1 − ρ) at every place, whatever stands
+/// there (the equations' own solution, as form factors sum to 1): beside a turned block, under one that leans, and in a corner. Off it is what
+/// four rays to each patch do not see of its edges.
+#[test]
+fn a_glowing_room_is_evenly_lit_about_its_blocks() {
+    let rho = 0.5;
+    let glowing = |shape: Arc<dyn Shape>| Part { shape, ..part(face(0, 1.0), rho, Some(1.0 / PI)) };
+    let block = |turn: DMat3, size: DVec3, middle: DVec3| {
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i >> bit & 1 == 1 { 0.5 } else { -0.5 };
+            middle + turn * (size * DVec3::new(sign(0), sign(1), sign(2)))
+        };
+        let corners: Vec<DVec3> = (0..8).map(corner).collect();
+        let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        Polyhedron::new(&corners, &faces.map(|f| f.to_vec())).expect("a block")
+    };
+    let standing = block(DMat3::from_rotation_z(0.4), DVec3::new(0.6, 0.5, 0.8), DVec3::new(-0.3, 0.2, -0.6));
+    let leaning = block(DMat3::from_rotation_y(0.5), DVec3::new(0.3, 0.4, 0.3), DVec3::new(0.5, -0.4, 0.0));
+    let mut parts: Vec<Part> = (0..6).map(|n| glowing(Arc::new(face(n, 1.0)))).collect();
+    parts.extend([glowing(Arc::new(standing)), glowing(Arc::new(leaning))]);
+    let scene = of_parts(parts, Vec::new());
+    let solution = solved(&scene, 0.25);
+    let expected = 1.0 / (1.0 - rho);
+    for (x, y, z, axis) in [
+        // 5 mm before the block's side, and on the floor between two of its edges.
+        (-0.3 + 0.306 * 0.4_f64.cos(), 0.2 + 0.306 * 0.4_f64.sin(), -1.0, DVec3::Z),
+        (0.3, -0.3, -1.0, DVec3::Z),
+        (0.5, -0.4, -1.0, DVec3::Z),
+        (-0.99, 0.99, -1.0, DVec3::Z),
+        (-0.3, 0.2, -0.2 + 1e-9, DVec3::Z),
+        (1.0, 0.2, 0.3, DVec3::NEG_X),
+    ] {
+        let got = at(&solution, DVec3::new(x, y, z), axis);
+        assert!((got / expected - 1.0).abs() < 0.01, "{x} {y} {z}: {got} {expected}");
+    }
+    assert!(solution.summary.greatest_sum < 1.05, "{:?}", solution.summary);
 }
 
 /// A box of coloured walls with a block and a square lamp, and a room under a luminaire of a file.

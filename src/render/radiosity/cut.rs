@@ -82,7 +82,10 @@ impl Occluders {
             (false, true) => false,
             _ => number < own,
         };
-        let in_plane = |p: &DVec3| cell.height(*p).is_some_and(|h| h.abs() <= SAME_PLANE * radius);
+        // Far from the origin coordinates are rounded by more, and a small patch tilts by that.
+        let rounding = 4.0 * f64::EPSILON * centre.abs().max_element();
+        let within = |p: &DVec3| SAME_PLANE * radius + rounding * (1.0 + p.distance(centre) / radius);
+        let in_plane = |p: &DVec3| cell.height(*p).is_some_and(|h| h.abs() <= within(p));
         (self.0.iter().enumerate())
             .filter_map(|(number, other)| Some((number, other.as_ref()?)))
             .filter(|(number, other)| *number != own && goes_before(*number, other))
@@ -228,6 +231,27 @@ mod tests {
                 occluders.hide(number, &cell, centre, radius)
             };
             assert_eq!([hidden(1), hidden(5)], [false, true], "{turn}");
+        }
+    }
+
+    /// The bottom of a block lies on the floor also a million metres from the origin, where coordinates are rounded to 1e-10 m.
+    #[test]
+    fn what_lies_on_another_is_hidden_far_away_too() {
+        let far = DVec3::new(1e6, -1e6, 1e6);
+        let (x, y) = (DVec3::new(0.36, 0.48, -0.8), DVec3::new(0.8, -0.6, 0.0));
+        let floor = Chart::Parallelogram { corner: far - x - y, edges: [2.0 * x, 2.0 * y] };
+        for edge in [0.2, 0.02] {
+            let corner = far - 0.5 * edge * (x + y);
+            let bottom =
+                |lift: f64| Chart::Parallelogram { corner: corner + lift * y.cross(x), edges: [edge * y, edge * x] };
+            let hidden = |lift: f64| {
+                let occluders = Occluders::new([floor, bottom(lift)].iter().map(|c| (*c, false)));
+                let cell = Cell::whole(bottom(lift));
+                let (centre, radius) = around(&cell.extremes());
+                occluders.hide(1, &cell, centre, radius)
+            };
+            // A tenth of a micrometre is more than rounding.
+            assert_eq!([hidden(0.0), hidden(1e-7)], [true, false], "{edge}");
         }
     }
 
