@@ -229,6 +229,16 @@ fn scenes_that_they_suit_are_told_from_others() {
     // Packets of the sky come to what is bounded alone.
     let ground = "[[shape]]\nmaterial = \"white\"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n";
     assert!(!suits(&format!("{ROOM}{WALL}{LAMP}{ground}{VIEW}")));
+    // What no surface stops lights what no packet comes to.
+    let barzel = |control: &str| {
+        format!(
+            "[[light]]\nbarzel = {{ at = [0, 0, 2.5], aim = [0, 0, 0], up = [0, 1, 0], intensity = \"9 cd\"{control} }}\n"
+        )
+    };
+    assert!(suits(&format!("{ROOM}{WALL}{}{VIEW}", barzel(""))));
+    for control in [", shadows = false", ", falloff = { exponent = 1 }"] {
+        assert!(!suits(&format!("{ROOM}{WALL}{}{VIEW}", barzel(control))), "{control}");
+    }
     let mirrors = "[[material]]\nname = \"mirror\"\nmetal = { medium = \"Ag\" }\n[[shape]]\nmaterial = \"mirror\"\nsphere = { centre = [0, 0, 0], radius = \"1 m\" }\n";
     assert!(!suits(&format!("{mirrors}{VIEW}")));
 }

@@ -20,7 +20,8 @@
 //! | noise | 1 − amplitude (½ + ½ g(f X, f Y)), g gradient noise | f, amplitude, seed |
 //! | shadow | whether anything may stand in its way: the renderer asks [`Light::casts_shadows`] | |
 //!
-//! Limits: controls that act along a ray (another falloff than the square law, cut-on, cut-off, blockers) are no light that travels.
+//! Limits: controls that act along a ray (another falloff than the square law, cut-on, cut-off, blockers), and shining through what stands in the
+//! way, are no light that travels.
 //! [`Light::emit`] and [`Light::flux`] are those of the intensity far away, falloff as the square law, all depths shown; they stand for
 //! the light only where [`Light::emits_what_arrives`] says so.
 //!
@@ -278,18 +279,37 @@ impl Barzel {
 
     /// A direction of the light's space and its density, 1/sr: even over the window that shape and slide leave, or with the beam.
     fn draw(&self, [u, v]: [f64; 2]) -> (DVec3, f64) {
-        let sides = [self.controls.shape.map(|s| s.outer()), self.controls.slide.as_ref().map(|s| s.half)];
-        match sides.into_iter().flatten().reduce(DVec2::min) {
+        match self.window() {
             Some(half) => {
                 let window = half * DVec2::new(2.0 * u - 1.0, 2.0 * v - 1.0) + self.controls.shear;
                 let direction = window.extend(1.0).normalize();
-                (direction, 1.0 / (4.0 * half.x * half.y * direction.z.powi(3)))
+                (direction, even_pdf(half, direction.z))
             }
             None => {
                 let direction = cosine_power([u, v], self.controls.beam_exponent);
                 (direction, cosine_power_pdf(direction.z, self.controls.beam_exponent))
             }
         }
+    }
+
+    /// The density of [`Barzel::draw`] in a direction of the light's space (unit), 1/sr.
+    fn pdf(&self, local: DVec3) -> f64 {
+        if local.z <= 0.0 {
+            return 0.0;
+        }
+        match self.window() {
+            Some(half) => {
+                let away = (local.truncate() / local.z - self.controls.shear).abs();
+                if away.cmple(half).all() { even_pdf(half, local.z) } else { 0.0 }
+            }
+            None => cosine_power_pdf(local.z, self.controls.beam_exponent),
+        }
+    }
+
+    /// Half of the extents of the part of the window that shape and slide leave, about the shear; `None` without both.
+    fn window(&self) -> Option<DVec2> {
+        let sides = [self.controls.shape.map(|s| s.outer()), self.controls.slide.as_ref().map(|s| s.half)];
+        sides.into_iter().flatten().reduce(DVec2::min)
     }
 }
 
@@ -319,6 +339,11 @@ impl Slide {
         let all = self.coefficients.iter().skip(channel).step_by(self.spectra.len());
         all.fold(0.0, |most, k| f64::max(most, f64::from(*k)))
     }
+}
+
+/// Density per solid angle, at a cosine to the axis, of places that are even over a window of half the extents `half`.
+fn even_pdf(half: DVec2, cos: f64) -> f64 {
+    1.0 / (4.0 * half.x * half.y * cos.powi(3))
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -391,6 +416,14 @@ impl Light for Barzel {
         (gain > 0.0).then(|| Ray { origin: self.position, direction: self.to_world * local })
     }
 
+    fn emission_density(&self, _: DVec3, direction: DVec3, distance: f64) -> f64 {
+        if self.emits_what_arrives() {
+            self.pdf(self.to_world.transpose() * -direction) / distance / distance
+        } else {
+            0.0
+        }
+    }
+
     fn is_one_direction(&self) -> bool {
         true
     }
@@ -408,8 +441,9 @@ impl Light for Barzel {
     }
 
     fn emits_what_arrives(&self) -> bool {
-        let Controls { falloff, clip, blockers, .. } = &self.controls;
-        matches!(falloff, Falloff::Power { exponent: 2.0, .. }) && clip.is_none() && blockers.is_empty()
+        let Controls { falloff, clip, blockers, shadows, .. } = &self.controls;
+        // What shines through surfaces lights what no packet comes to.
+        matches!(falloff, Falloff::Power { exponent: 2.0, .. }) && clip.is_none() && blockers.is_empty() && *shadows
     }
 }
 
@@ -515,6 +549,47 @@ mod tests {
         // A hard circular cone: 2π (1 − cos 45°), to what adaptive cells resolve of its edge.
         let cone = flux(Controls { shape: Some(ellipse(1.0, 1.0)), ..Controls::default() });
         assert!((cone / (TAU * (1.0 - 0.5_f64.sqrt())) - 1.0).abs() < 2e-4, "{cone}");
+    }
+
+    /// The mean of 1/pdf over the draws that shine is the solid angle into which the light shines: 2π of a half space, a sixth of the sphere of the
+    /// square pyramid of ±45°, 2π (1 − cos 45°) of the cone.
+    #[test]
+    fn rays_are_drawn_with_the_density_that_is_told() {
+        let square = Superellipse::new(DVec2::ONE, DVec2::ONE, 0.0).expect("a region");
+        let with = |shape| Controls { shape, ..Controls::default() };
+        let wide = Controls { beam_exponent: 0.5, ..Controls::default() };
+        for (controls, expected) in [
+            (with(None), TAU),
+            (wide, TAU),
+            (with(Some(square)), 4.0 * PI / 6.0),
+            (Controls { shear: DVec2::new(0.3, -0.2), ..with(Some(square)) }, f64::NAN),
+            (with(Some(ellipse(1.0, 1.0))), TAU * (1.0 - 0.5_f64.sqrt())),
+        ] {
+            let light = light(controls);
+            let mut random = crate::math::random::Stream::new(5, 0);
+            let (mut flux, mut sum, mut squares) = ([0.0; 2], 0.0, 0.0);
+            const DRAWS: u32 = 100_000;
+            for _ in 0..DRAWS {
+                let Some(ray) = light.emit(random.uniforms(), &mut flux) else { continue };
+                // 3 m away, per area.
+                let x = 1.0 / (9.0 * light.emission_density(HERE, -ray.direction, 3.0));
+                sum += x;
+                squares += x * x;
+                // I/pdf is what a ray carries, where nothing but the beam dims it.
+                let beam = (light.to_world.z_axis.dot(ray.direction)).powf(light.controls.beam_exponent);
+                assert!((flux[0] / (100.0 * beam * x) - 1.0).abs() < 1e-9);
+            }
+            let n = f64::from(DRAWS);
+            let (mean, error) = (sum / n, ((squares / n - (sum / n).powi(2)).max(0.0) / n).sqrt());
+            assert!(expected.is_nan() || (mean - expected).abs() <= 4.5 * error + 1e-9, "{mean} ± {error}, {expected}");
+        }
+        // Beside the window, behind the light, and of a light that does not travel as light does.
+        let pyramid = light(with(Some(square)));
+        let towards = |l: &Barzel, d: DVec3| l.emission_density(HERE, -(l.to_world * d).normalize(), 1.0);
+        assert_eq!(towards(&pyramid, DVec3::new(1.01, 0.0, 1.0)), 0.0);
+        assert_eq!(towards(&pyramid, DVec3::NEG_Z), 0.0);
+        let ghost = light(Controls { shadows: false, ..Controls::default() });
+        assert!(towards(&ghost, DVec3::Z) == 0.0 && !ghost.emits_what_arrives());
     }
 
     #[test]
