@@ -23,6 +23,7 @@
 //! | [`format`](mod@format) | files of meshes |
 //! | [`description`] | scenes in TOML |
 //! | [`scene`] | surfaces, materials and lights together |
+//! | [`enclosure`] | closed spaces that keep all light |
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
@@ -40,6 +41,7 @@ pub mod build;
 mod corners;
 pub mod description;
 pub mod emission;
+pub mod enclosure;
 pub mod estimate;
 pub mod film;
 pub mod form_factor;

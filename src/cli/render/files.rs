@@ -147,6 +147,11 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
             Finding::warning("R007", "a preview, direct light without shadows: no figure of it is a measurement");
         finding.at(Location::default().in_file(path)).hint("the solver `path` measures")
     });
+    let endless = built.endless.then(|| {
+        let message = "a closed space that absorbs nothing: what the solver leaves out of it has no bound, and no audit follows it";
+        let finding = Finding::warning("R009", message);
+        finding.at(Location::default().in_file(path)).hint("a reflectance below 1, or an opening")
+    });
     let faults = (readings.iter().filter(|r| r.faults.count() > 0)).map(|r| {
         let f = &r.faults;
         let message = format!(
@@ -159,5 +164,5 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
-    incomplete.chain(dark).chain(preview).chain(faults).collect()
+    incomplete.chain(dark).chain(preview).chain(endless).chain(faults).collect()
 }

@@ -232,6 +232,10 @@ impl Work {
     fn audit(&self, packets: u64) -> Audit {
         /// Samples of a reading, with and without what the solver leaves out.
         const SAMPLES: u64 = 1 << 13;
+        if self.built.endless {
+            // Both follow light to its natural end, and there is none.
+            return Audit { energy: None, lost: vec![None; self.built.instruments.len()] };
+        }
         let Built { scene, settings, quantities, .. } = &self.built;
         let (materials, of) = (self.built.material_names.len(), &self.built.material_of_surface);
         let energy = energy::audit(scene, settings, &quantities.radiant, of, materials, packets);

@@ -3,6 +3,7 @@
 mod analysis;
 mod barzel;
 mod colour;
+mod endless;
 mod instrument;
 mod light;
 mod material;
@@ -118,6 +119,9 @@ pub struct Built {
     pub single_scattering: Vec<(String, SingleScattering)>,
     /// Meshes that lost triangles.
     pub incomplete: Vec<Incomplete>,
+    /// Light or instruments are in a closed space that absorbs nothing, where paths end by the solver's limits alone: what those leave out has no
+    /// bound, and packets that know no limits would never end.
+    pub endless: bool,
 }
 
 /// A mesh of a file some of whose triangles were left out, because they span no area or have a corner that is not finite.
@@ -221,6 +225,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         shadows,
         single_band: render.wavelengths_per_path == Carried::One,
     };
+    let endless = builder.endless(&scene, &surfaces, &instruments, &limits)?;
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;
@@ -241,6 +246,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         material_of_surface,
         single_scattering,
         incomplete,
+        endless,
     })
 }
 

@@ -150,6 +150,12 @@ impl Material for Dielectric {
         true
     }
 
+    /// What is not reflected goes through.
+    fn albedo(&self, _: DVec3, share: &mut [f64]) -> Option<f64> {
+        share.fill(1.0);
+        Some(0.0)
+    }
+
     fn nature(&self) -> Nature {
         Nature { disperses: self.interface.disperses, ..Nature::default() }
     }

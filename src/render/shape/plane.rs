@@ -74,6 +74,10 @@ impl Shape for Plane {
         f64::INFINITY
     }
 
+    fn facing(&self) -> Option<DVec3> {
+        Some(self.facet.normal)
+    }
+
     /// The point that the plane was made of: there is no uniform density over an infinite area.
     fn sample_area(&self, _: [f64; 3]) -> SurfacePoint {
         self.point(self.facet.anchor)
