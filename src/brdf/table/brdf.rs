@@ -37,7 +37,14 @@ impl Table {
             return;
         }
         let here = HalfDiff::new(incident, outgoing);
-        for step in (0..STEPS).rev() {
+        let mut steps = STEPS;
+        if let Self::HalfAngle(table) = self {
+            if table.value_towards_normal(&here, STEPS, values) {
+                return;
+            }
+            steps = 1;
+        }
+        for step in (0..steps).rev() {
             let theta_h = here.theta_h * f64::from(step) / f64::from(STEPS);
             let (i, o) = HalfDiff { theta_h, ..here }.directions();
             if self.value(i, o, values) != Known::Missing {

@@ -16,6 +16,7 @@
 //! Reference: W. Matusik et al., *A Data-Driven Reflectance Model*, ACM Trans. Graph. 22 (2003).
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::OnceLock;
 
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
@@ -103,6 +104,21 @@ pub struct HalfAngle {
     half: Borders,
     difference: Borders,
     azimuth: Borders,
+    beside: Beside,
+}
+
+/// By bin, which θ_d of its θ_h and φ_d has values and is nearest; made when first a missing bin is asked for. It follows from the values, so that
+/// tables are the same with it or without.
+#[derive(Debug, Clone, Default)]
+struct Beside(OnceLock<Vec<u8>>);
+
+/// In [`Beside`]: there is none.
+const NONE: u8 = u8::MAX;
+
+impl PartialEq for Beside {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl HalfAngle {
@@ -134,7 +150,7 @@ impl HalfAngle {
         // Up to 90°; the others lie the other way round.
         let azimuth = (0..phi_d.div_ceil(2)).map(|i| squared_tangent(i as f64 / phi_d as f64 * PI));
         let (half, difference, azimuth) = (Borders::new(half), Borders::new(difference), Borders::new(azimuth));
-        Self { resolution, channels, values, half, difference, azimuth }
+        Self { resolution, channels, values, half, difference, azimuth, beside: Beside::default() }
     }
 
     /// Number of bins per angle.
@@ -198,7 +214,23 @@ impl HalfAngle {
     /// Writes the values of the bin of two directions above the horizon. A missing bin takes those of the measured one nearest
     /// in θ_d, at the same θ_h and φ_d.
     pub fn value(&self, incident: DVec3, outgoing: DVec3, values: &mut [f64]) -> Known {
-        let bin = self.bin_of(incident, outgoing);
+        self.write(self.bin_of(incident, outgoing), values)
+    }
+
+    /// Writes the values of the first bin that has some at the same difference angles and θ_h of 1 − 1/n, 1 − 2/n … 1/n of that of a place, n =
+    /// `steps`; whether there is one. The normal itself, where φ_d means nothing, is left to the caller.
+    pub(super) fn value_towards_normal(&self, here: &HalfDiff, steps: u32, values: &mut [f64]) -> bool {
+        let at = |step: u32| HalfDiff { theta_h: here.theta_h * f64::from(step) / f64::from(steps), ..*here };
+        let mut last = None;
+        (1..steps).rev().any(|step| {
+            let bin = self.resolution.bin(&at(step));
+            // Not again of a bin that had none.
+            last.replace(bin) != Some(bin) && self.write(bin, values) != Known::Missing
+        })
+    }
+
+    /// Writes the values of a bin as [`HalfAngle::value`] does.
+    fn write(&self, bin: usize, values: &mut [f64]) -> Known {
         let (found, known) = match self.bin(bin)[0].is_nan() {
             false => (bin, Known::Measured),
             true => match self.measured_beside(bin) {
@@ -248,12 +280,50 @@ impl HalfAngle {
     }
 
     fn measured_beside(&self, bin: usize) -> Option<usize> {
-        let [h, d, p] = self.resolution.unflatten(bin);
-        let at = |d: usize| (h * self.resolution.theta_d + d) * self.resolution.phi_d + p;
-        let steps = 1..self.resolution.theta_d;
-        let beside = steps.flat_map(|s| [d.checked_sub(s), Some(d + s).filter(|d| *d < self.resolution.theta_d)]);
-        beside.flatten().map(at).find(|&b| !self.bin(b)[0].is_nan())
+        let [h, _, p] = self.resolution.unflatten(bin);
+        let nearest = self.beside.0.get_or_init(|| self.nearest_measured())[bin];
+        (nearest != NONE).then(|| (h * self.resolution.theta_d + usize::from(nearest)) * self.resolution.phi_d + p)
     }
+
+    /// [`Beside`]: of two that are as near the one of smaller θ_d.
+    fn nearest_measured(&self) -> Vec<u8> {
+        let Resolution { theta_d, phi_d, .. } = self.resolution;
+        let mut out = vec![NONE; self.resolution.bins()];
+        // Zones of one θ_h: down from the last measured θ_d, then back with the next above where that is nearer.
+        for (values, out) in
+            self.values.chunks_exact(theta_d * phi_d * self.channels.len()).zip(out.chunks_exact_mut(theta_d * phi_d))
+        {
+            let is_measured = |d: usize, p: usize| !values[(d * phi_d + p) * self.channels.len()].is_nan();
+            let mut last = vec![NONE; phi_d];
+            for d in 0..theta_d {
+                for (p, last) in last.iter_mut().enumerate() {
+                    if is_measured(d, p) {
+                        *last = number(d);
+                    }
+                    out[d * phi_d + p] = *last;
+                }
+            }
+            last.fill(NONE);
+            for d in (0..theta_d).rev() {
+                for (p, next) in last.iter_mut().enumerate() {
+                    if is_measured(d, p) {
+                        *next = number(d);
+                    }
+                    let below = &mut out[d * phi_d + p];
+                    let nearer = *below == NONE || usize::from(*next) - d < d - usize::from(*below);
+                    if *next != NONE && nearer {
+                        *below = *next;
+                    }
+                }
+            }
+        }
+        out
+    }
+}
+
+/// A number of a bin in θ_d, of 180 at most.
+fn number(d: usize) -> u8 {
+    u8::try_from(d).expect("checked: at most 180 bins")
 }
 
 /// tan²θ_h, tan²θ_d, and tan²φ_d with the sign of tanφ_d; where there is no azimuth (θ_d is 0), 0.
@@ -301,6 +371,25 @@ impl WithSimd for Many<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Stream;
+
+    /// A missing bin takes the values of the nearest in θ_d, of two that are as near those of the smaller one: by search, in tables of every coverage.
+    #[test]
+    fn missing_bins_take_their_nearest_neighbour() {
+        let resolution = Resolution { theta_h: 3, theta_d: 17, phi_d: 6 };
+        let mut random = Stream::new(3, 0);
+        for coverage in [0.0, 0.02, 0.3, 1.0] {
+            let mut value = |bin: usize| if random.uniform() < coverage { bin as f32 } else { f32::NAN };
+            let values: Vec<f32> = (0..resolution.bins()).map(&mut value).collect();
+            let table = HalfAngle::new(resolution, vec![Channel::Wavelength(550.0)], values.clone()).expect("a table");
+            for (bin, value) in values.iter().enumerate().filter(|(_, v)| v.is_nan()) {
+                let [h, d, p] = resolution.unflatten(bin);
+                let all = (0..resolution.theta_d).map(|other| (other.abs_diff(d), (h * 17 + other) * 6 + p));
+                let expected = all.filter(|(_, bin)| !values[*bin].is_nan()).min();
+                assert_eq!(table.measured_beside(bin), expected.map(|(_, bin)| bin), "{coverage}: {bin} {value}");
+            }
+        }
+    }
 
     #[test]
     fn borders_of_every_resolution_are_apart_in_few_cells() {
