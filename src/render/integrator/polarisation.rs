@@ -21,6 +21,8 @@
 //! References: M. Born & E. Wolf, *Principles of Optics*, 7th ed., §1.5; E. Collett, *Polarized Light* (1993), ch. 8; M. Mojzík et
 //! al., *Bi-Directional Polarised Light Transport*, EGSR 2016.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::brdf::fresnel::Components;
@@ -56,13 +58,35 @@ impl Polarisation {
         self.reference = None;
     }
 
+    /// Becomes that of another path.
+    pub fn copy(&mut self, other: &Self) {
+        self.reference = other.reference;
+        if other.reference.is_some() {
+            self.q.copy_from_slice(&other.q);
+            self.u.copy_from_slice(&other.u);
+            self.v.copy_from_slice(&other.v);
+        }
+    }
+
     /// A Dirac lobe turns the path from the direction `before` to `after` at a surface of unit normal `normal`; `write` writes its
     /// components per band, and says whether they are known. `intensity` is corrected for the difference from unpolarised light.
     pub fn turn(
         &mut self,
         write: impl FnOnce(&mut [Components]) -> bool,
+        directions: [DVec3; 2],
+        normal: DVec3,
+        intensity: &mut [f64],
+    ) {
+        self.turn_bands(write, directions, normal, 0..intensity.len(), intensity);
+    }
+
+    /// The same for a path that carries no more than the bands `bands`: no other component has to be written.
+    pub fn turn_bands(
+        &mut self,
+        write: impl FnOnce(&mut [Components]) -> bool,
         [before, after]: [DVec3; 2],
         normal: DVec3,
+        bands: Range<usize>,
         intensity: &mut [f64],
     ) {
         if !write(&mut self.components) {
@@ -77,8 +101,9 @@ impl Polarisation {
             let (cos, sin) = (s.dot(reference), s.dot(before.cross(reference)));
             (cos * cos - sin * sin, 2.0 * cos * sin)
         });
-        let state = self.q.iter_mut().zip(&mut self.u).zip(&mut self.v);
-        for ((((q, u), v), component), intensity) in state.zip(&self.components).zip(intensity) {
+        let state = self.q[bands.clone()].iter_mut().zip(&mut self.u[bands.clone()]).zip(&mut self.v[bands.clone()]);
+        let components = &self.components[bands.clone()];
+        for ((((q, u), v), component), intensity) in state.zip(components).zip(&mut intensity[bands]) {
             let (q0, u0, v0) =
                 turn.map_or((0.0, 0.0, 0.0), |(cos, sin)| (cos * *q + sin * *u, cos * *u - sin * *q, *v));
             let sum = component.s + component.p;

@@ -96,6 +96,12 @@ impl Dielectric {
     pub fn new(outside: &[f64], inside: &[f64]) -> Result<Self, Error> {
         Ok(Self { interface: Interface::new(outside, inside)? })
     }
+
+    /// What polarised light of a band keeps.
+    fn components(&self, outgoing: DVec3, incident: DVec3, band: usize) -> Components {
+        let reflected = dielectric_components(outgoing.z.abs(), self.interface.relative(band, outgoing));
+        if incident.z * outgoing.z > 0.0 { reflected } else { reflected.transmitted() }
+    }
 }
 
 impl Material for Dielectric {
@@ -115,7 +121,11 @@ impl Material for Dielectric {
         if cos == 0.0 {
             return None;
         }
-        weights.iter_mut().zip(self.interface.all(outgoing)).for_each(|(w, eta)| *w = dielectric(cos, eta));
+        if self.interface.disperses {
+            weights.iter_mut().zip(self.interface.all(outgoing)).for_each(|(w, eta)| *w = dielectric(cos, eta));
+        } else {
+            weights.fill(dielectric(cos, self.interface.relative(hero, outgoing)));
+        }
         // A band of little reflectance does not stand alone for one that reflects much: no weight is above 4.
         let largest = weights.iter().copied().fold(0.0, f64::max);
         let share = weights[hero].max(0.25 * largest);
@@ -137,16 +147,48 @@ impl Material for Dielectric {
         Some(Scattered { direction, pdf: 1.0 - share, delta: true, split: self.interface.disperses, eta })
     }
 
+    fn sample_band(
+        &self,
+        outgoing: DVec3,
+        u: [f64; 3],
+        transport: Transport,
+        hero: usize,
+        weights: &mut [f64],
+    ) -> Option<Scattered> {
+        let cos = outgoing.z.abs();
+        if cos == 0.0 {
+            return None;
+        }
+        let eta = self.interface.relative(hero, outgoing);
+        let share = dielectric(cos, eta);
+        let split = self.interface.disperses;
+        if u[0] < share {
+            weights[hero] = 1.0;
+            let direction = DVec3::new(-outgoing.x, -outgoing.y, outgoing.z);
+            return Some(Scattered { direction, pdf: share, delta: true, split: false, eta: 1.0 });
+        }
+        let direction = refracted(outgoing, eta)?;
+        weights[hero] = scaling(eta, transport);
+        Some(Scattered { direction, pdf: 1.0 - share, delta: true, split, eta })
+    }
+
     fn pdf(&self, _: DVec3, _: DVec3, _: usize) -> f64 {
         0.0
     }
 
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
-        let reflects = incident.z * outgoing.z > 0.0;
-        for (component, eta) in components.iter_mut().zip(self.interface.all(outgoing)) {
-            let reflected = dielectric_components(outgoing.z.abs(), eta);
-            *component = if reflects { reflected } else { reflected.transmitted() };
+        if !self.interface.disperses {
+            components.fill(self.components(outgoing, incident, 0));
+            return true;
         }
+        for (band, component) in components.iter_mut().enumerate() {
+            *component = self.components(outgoing, incident, band);
+        }
+        true
+    }
+
+    fn polarise_band(&self, outgoing: DVec3, incident: DVec3, hero: usize, components: &mut [Components]) -> bool {
+        components[hero] = self.components(outgoing, incident, hero);
         true
     }
 

@@ -92,6 +92,19 @@ pub trait Material: std::fmt::Debug + Send + Sync {
         weights: &mut [f64],
     ) -> Option<Scattered>;
 
+    /// The same for a path that carries the band `hero` alone: no other weight has to be written, and the choice among lobes may be the better
+    /// one for that band.
+    fn sample_band(
+        &self,
+        outgoing: DVec3,
+        u: [f64; 3],
+        transport: Transport,
+        hero: usize,
+        weights: &mut [f64],
+    ) -> Option<Scattered> {
+        self.sample(outgoing, u, transport, hero, weights)
+    }
+
     /// Density per solid angle with which [`Material::sample`] draws `incident`, outside of Dirac lobes, for the same `hero`.
     fn pdf(&self, outgoing: DVec3, incident: DVec3, hero: usize) -> f64;
 
@@ -113,6 +126,12 @@ pub trait Material: std::fmt::Debug + Send + Sync {
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
         let _ = (outgoing, incident, components);
         false
+    }
+
+    /// The same of the band `hero`: no other component has to be written.
+    fn polarise_band(&self, outgoing: DVec3, incident: DVec3, hero: usize, components: &mut [Components]) -> bool {
+        let _ = hero;
+        self.polarise(outgoing, incident, components)
     }
 
     /// What it asks of the model of light.
