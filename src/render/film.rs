@@ -6,6 +6,8 @@ use rayon::prelude::*;
 
 use super::bands::Bands;
 use super::estimate::{self, stream};
+use super::guiding;
+use super::integrator::guide::Guide;
 use super::integrator::path::PathTracer;
 use super::integrator::virtual_lights::{self, VirtualLights};
 use super::light::shares::Shares;
@@ -27,6 +29,12 @@ const SURVEY: u64 = 16;
 /// Streams of another instrument are the survey's, others those of the trial of virtual lights: the picture's own numbers stay unknown.
 const SURVEYED: u64 = u32::MAX as u64;
 const TRIAL: u64 = SURVEYED - 1;
+/// And those of the packets that guide.
+const LEARNT: u64 = SURVEYED - 2;
+/// One packet for so many samples is sent to guide them.
+const PACKET: u64 = 4;
+/// What guiding finds is seldom seen without it, so that a few samples make it look dearer than it is: by no more than this.
+const UNSEEN: f64 = 2.0;
 /// The bit in which the streams of their virtual lights differ from them.
 const VIRTUAL: u64 = 1 << 30;
 
@@ -63,6 +71,8 @@ pub struct Film<'a, F> {
     source: Option<virtual_lights::Source>,
     /// Whether they are used.
     virtual_lights: bool,
+    /// What guides the paths.
+    guide: Option<Guide>,
     /// Where packets start, if they help.
     lights: Option<Shares>,
     /// What they found, once they were sent.
@@ -116,24 +126,29 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 .then(|| virtual_lights::Source::of(scene, &settings.limits))
                 .flatten(),
             virtual_lights: settings.virtual_lights == Some(true),
+            guide: None,
             lights: settings.packets.then(|| Shares::new(scene.lights(), scene.bands().len())),
             packets: None,
         }
     }
 
-    /// Finds out whether virtual lights pay, where that was not said ([`Settings::virtual_lights`]). An adaptive picture is then looked at
-    /// with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
+    /// Finds out whether guiding and virtual lights pay, where that was not said ([`Settings::guiding`], [`Settings::virtual_lights`]). An
+    /// adaptive picture is then looked at with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
     /// all): those of large relative error σ/(L + ε) get more.
     ///
     /// The samples that it took are thrown away, so that nothing that is done depends on the values of those that count, which would be a
     /// bias. With fewer than sixteen samples nothing is found out.
     pub fn survey(&mut self, adaptive: bool) {
+        let surveys = self.samples >= SURVEY;
+        if self.settings.guiding.unwrap_or(surveys) {
+            self.guide();
+        }
         self.send();
-        if self.samples < SURVEY {
+        if !surveys {
             return;
         }
         if self.settings.virtual_lights.is_none() && self.source.is_some() {
-            self.virtual_lights = self.gains();
+            self.virtual_lights = self.cost(true, self.guide.as_ref()) < self.cost(false, self.guide.as_ref());
         }
         if !adaptive {
             return;
@@ -143,7 +158,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let rows: Vec<Vec<Scattered>> = (0..height)
             .into_par_iter()
             .map_init(
-                || self.tracer(self.virtual_lights),
+                || self.tracer(self.virtual_lights, self.guide.as_ref()),
                 |tracer, y| {
                     let row = self.surveyed(tracer, y, self.samples / SURVEY, SURVEYED);
                     (self.progress)(width as u64 * (self.samples / SURVEY));
@@ -163,6 +178,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             camera: self.camera,
             settings: self.settings,
             shares,
+            guide: self.guide.as_ref(),
             instrument: self.instrument,
             per_pixel: self.samples,
             tristimulus: self.tristimulus,
@@ -176,31 +192,40 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         self.noise
     }
 
-    /// Whether virtual lights make less noise than paths alone with the same number of searches along rays, which is the same on every machine; by
-    /// a few samples of every eighth row.
-    fn gains(&self) -> bool {
+    /// Learns what guides the paths, and forgets it where that was not asked for and does not pay.
+    fn guide(&mut self) {
+        let pixels = self.description.width as u64 * self.description.height as u64;
+        let packets = pixels.saturating_mul(self.samples) / PACKET;
+        let guide = guiding::learn(self.scene, self.settings, self.instrument + LEARNT, packets);
+        // Packets to the lens are sent later and by it: the trial is that of the paths beside them.
+        self.guide = guide.filter(|guide| {
+            self.settings.guiding.is_some()
+                || self.cost(self.virtual_lights, Some(guide)) < UNSEEN * self.cost(self.virtual_lights, None)
+        });
+    }
+
+    /// The variance of paths with such helpers times the number of searches along rays, which is the same on every machine; by a few samples of every
+    /// eighth row.
+    fn cost(&self, virtual_lights: bool, guide: Option<&Guide>) -> f64 {
         /// Samples of a pixel.
         const SAMPLES: u64 = 4;
         let (width, height) = (self.description.width, self.description.height);
-        let cost = |virtual_lights: bool| {
-            let rows: Vec<usize> = (0..height).step_by(2 * scatter::BLOCK).collect();
-            let rows: Vec<_> = (rows.into_par_iter())
-                .map(|y| {
-                    let mut tracer = self.tracer(virtual_lights);
-                    let row = self.surveyed(&mut tracer, y, SAMPLES, TRIAL);
-                    (y, row, tracer.effort())
-                })
-                .collect();
-            let mut scatter = Scatter::new(width, height);
-            rows.iter().for_each(|(y, row, _)| scatter.add(*y, row));
-            rows.iter().map(|row| row.2).sum::<f64>() * scatter.noise().powi(2)
-        };
-        cost(true) < cost(false)
+        let rows: Vec<usize> = (0..height).step_by(2 * scatter::BLOCK).collect();
+        let rows: Vec<_> = (rows.into_par_iter())
+            .map(|y| {
+                let mut tracer = self.tracer(virtual_lights, guide);
+                let row = self.surveyed(&mut tracer, y, SAMPLES, TRIAL);
+                (y, row, tracer.effort())
+            })
+            .collect();
+        let mut scatter = Scatter::new(width, height);
+        rows.iter().for_each(|(y, row, _)| scatter.add(*y, row));
+        rows.iter().map(|row| row.2).sum::<f64>() * scatter.noise().powi(2)
     }
 
-    fn tracer(&self, virtual_lights: bool) -> PathTracer<'_> {
+    fn tracer<'b>(&'b self, virtual_lights: bool, guide: Option<&'b Guide>) -> PathTracer<'b> {
         let (limits, heroes) = (&self.settings.limits, &self.settings.heroes);
-        let tracer = PathTracer::new(self.scene, *limits, heroes);
+        let tracer = PathTracer::new(self.scene, *limits, heroes).guided(guide);
         match (&self.lights, &self.source) {
             (Some(shares), _) => tracer.beside(shares),
             (None, Some(source)) if virtual_lights => {
@@ -293,7 +318,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let channels: Vec<usize> = (0..this.description.channels.len()).collect();
         rows.par_iter()
             .map_init(
-                || this.tracer(this.virtual_lights),
+                || this.tracer(this.virtual_lights, this.guide.as_ref()),
                 |tracer, &y| {
                     let region = Region::rows(&this.description, y, 1);
                     let mut samples = vec![0.0; region.width * channels.len()];
@@ -381,7 +406,7 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
             .par_chunks_mut(region.width * channels.len())
             .enumerate()
             .map_init(
-                || this.tracer(this.virtual_lights),
+                || this.tracer(this.virtual_lights, this.guide.as_ref()),
                 |tracer, (row, out)| this.row(tracer, region, region.y + row, channels, out),
             )
             .collect();

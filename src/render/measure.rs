@@ -55,6 +55,9 @@ pub struct Settings {
     /// Whether virtual lights stand for light between diffuse surfaces in pictures ([`virtual_lights`](super::integrator::virtual_lights));
     /// without a word, where they make less noise in the same time.
     pub virtual_lights: Option<bool>,
+    /// Whether paths of pictures are guided to what comes over polished surfaces ([`guide`](super::integrator::guide)); without a word, where that
+    /// pays.
+    pub guiding: Option<bool>,
 }
 
 impl Settings {
@@ -63,7 +66,7 @@ impl Settings {
     pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
         let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
-        Self { seed, limits, points: Points::default(), heroes, packets: false, virtual_lights: None }
+        Self { seed, limits, points: Points::default(), heroes, packets: false, virtual_lights: None, guiding: None }
     }
 
     /// The random numbers of a stream.

@@ -27,6 +27,7 @@
 //! | [`sampler`] | well-spread random numbers |
 //! | [`sensor`] | cameras, and what meters make of the light around them |
 //! | [`integrator`] | solvers |
+//! | [`guiding`] | what guides the paths of a picture |
 //! | [`radiosity`] | the light of diffuse scenes, without random numbers |
 //! | [`estimate`], [`measure`], [`noise`] | readings with their standard errors, and the noise of pictures |
 //! | [`audit`] | where the energy goes, and what readings lose |
@@ -48,6 +49,7 @@ pub mod form_factor;
 pub mod format;
 pub mod goniophotometer;
 pub mod gonioreflectometer;
+pub mod guiding;
 mod hierarchy;
 pub mod integrator;
 pub mod light;

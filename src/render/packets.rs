@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::estimate::{Faults, stream};
 use super::integrator::bidirectional::{PacketTracer, Splats, Target};
+use super::integrator::guide::Guide;
 use super::light::shares::Shares;
 use super::measure::Settings;
 use super::scene::Scene;
@@ -59,6 +60,8 @@ pub struct Task<'a> {
     pub settings: &'a Settings,
     /// Of the scene's lights.
     pub shares: &'a Shares,
+    /// What guides the paths beside them.
+    pub guide: Option<&'a Guide>,
     /// Number of the instrument in the render.
     pub instrument: u64,
     /// How many packets are sent for every pixel of the picture; rounded up to whole streams.
@@ -87,6 +90,7 @@ impl PacketPicture {
                 || {
                     let (limits, heroes) = (task.settings.limits, &task.settings.heroes);
                     PacketTracer::new(task.scene, limits, heroes, task.shares, Target::Camera(task.camera))
+                        .beside(task.guide)
                 },
                 |tracer, (number, Brought { splats, together, faults })| {
                     splats.clear();

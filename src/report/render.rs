@@ -9,6 +9,7 @@ use crate::render::build::{Built, Kind};
 use crate::render::estimate::Figure;
 use crate::render::goniophotometer::Measured;
 use crate::render::gonioreflectometer;
+use crate::render::guiding;
 use crate::render::integrator::limits::Follow;
 use crate::render::integrator::virtual_lights::Source;
 use crate::render::radiosity::Summary;
@@ -63,6 +64,13 @@ pub fn model(built: &Built) -> Value {
         (true, Some(true)) => "in every picture",
         (true, None) => "in every picture that has less noise by them in the same time",
     };
+    let guiding = match (guiding::suits(&built.scene, limits), built.settings.guiding) {
+        (false, _) | (_, Some(false)) => "in no picture",
+        (true, Some(true)) => "in every picture to whose diffuse surfaces packets come over polished ones",
+        (true, None) => {
+            "in every picture to whose diffuse surfaces packets come over polished ones, and which gains by it"
+        }
+    };
     let paths = match (limits.single_band, analysis.fluorescent.is_empty(), analysis.dispersive.is_empty()) {
         (true, true, _) => "every path carries one of them",
         (true, false, _) => "every path carries one of them, and exchanges it at materials that fluoresce",
@@ -91,6 +99,7 @@ pub fn model(built: &Built) -> Value {
             "because": analysis.caustics_because,
         },
         "virtual_lights": virtual_lights,
+        "guiding": guiding,
         "materials": {
             "dispersive": analysis.dispersive,
             "fluorescent": analysis.fluorescent,

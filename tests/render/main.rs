@@ -9,6 +9,7 @@ mod bidirectional;
 mod cli;
 mod endless;
 mod files;
+mod guiding;
 mod honest;
 mod instruments;
 mod keys;

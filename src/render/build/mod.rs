@@ -231,8 +231,10 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let incomplete = builder.meshes.into_inner().incomplete;
     let packets = render.solver == Solver::Bidirectional;
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
-    let virtual_lights = if render.model == Model::Full { Some(false) } else { render.virtual_lights };
-    let settings = Settings { packets, virtual_lights, points: render.sampler, ..settings };
+    let full = render.model == Model::Full;
+    let virtual_lights = if full { Some(false) } else { render.virtual_lights };
+    let guiding = if full { Some(false) } else { render.guiding };
+    let settings = Settings { packets, virtual_lights, guiding, points: render.sampler, ..settings };
     Ok(Built {
         scene,
         instruments,

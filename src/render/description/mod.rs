@@ -73,6 +73,8 @@ pub struct Render {
     pub adaptive: bool,
     /// Whether places that packets from the lights came to light diffuse surfaces in pictures; without it where that makes less noise.
     pub virtual_lights: Option<bool>,
+    /// Whether packets from the lights tell paths of pictures where glass and mirrors send light from; without it where that pays.
+    pub guiding: Option<bool>,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,
@@ -109,6 +111,7 @@ impl Default for Render {
             samples: 64,
             adaptive: true,
             virtual_lights: None,
+            guiding: None,
             meter_samples: 1 << 18,
             seed: 0,
             max_edges: None,

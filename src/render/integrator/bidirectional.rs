@@ -32,7 +32,7 @@
 //! glass or off mirrors is found by all three ways. So a caustic that falls on a meter is found where the meter has some area.
 //!
 //! Limits: lights that do not behave as light does ([`Light::emission_density`] is 0) are left to the path tracer; a caustic that is seen
-//! in a mirror or through glass is found by neither (but by chance, from the camera).
+//! in a mirror or through glass is found by neither (but from the camera: by chance, or guided, see [`super::guide`]).
 //!
 //! [`Light::emission_density`]: crate::render::light::Light::emission_density
 //!
@@ -42,6 +42,7 @@
 use glam::DVec3;
 
 use super::frame::Frame;
+use super::guide::Guide;
 use super::limits::Limits;
 use super::packet::{Origin, Packet, Vertex};
 use crate::render::light::choice::Choice;
@@ -176,6 +177,8 @@ pub struct PacketTracer<'a> {
     target: Target<'a>,
     choice: Choice,
     packet: Packet<'a>,
+    /// What guides the paths beside it.
+    guide: Option<&'a Guide>,
     value: Vec<f64>,
 }
 
@@ -209,8 +212,21 @@ impl<'a> PacketTracer<'a> {
             target,
             choice: Choice::new(scene.lights(), middle),
             packet: Packet::new(scene, limits, heroes, shares),
+            guide: None,
             value: vec![0.0; n],
         }
+    }
+
+    /// The same beside paths that are guided.
+    #[must_use]
+    pub fn beside(self, guide: Option<&'a Guide>) -> Self {
+        Self { guide, ..self }
+    }
+
+    /// The density with which a path that comes to a vertex from `from` goes on to where the packet came from.
+    fn onwards(&self, vertex: &Vertex<'_>, from: DVec3) -> f64 {
+        let own = vertex.material.pdf(from, vertex.arriving, vertex.hero);
+        self.guide.map_or(own, |guide| guide.density(vertex.material, vertex.point.position, vertex.back, own))
     }
 
     /// Sends one packet through the scene; the mean of what packets add is what they add to the picture's radiance or the meter's reading.
@@ -251,7 +267,7 @@ impl<'a> PacketTracer<'a> {
                 // A lamp is not sought for a lobe of Dirac's.
                 Rivals { seeks: 0.0, ..here }
             } else {
-                here.after(vertex.material.pdf(drawn.direction, vertex.arriving, vertex.hero), drawn.pdf)
+                here.after(self.onwards(&vertex, drawn.direction), drawn.pdf)
             });
         }
     }
@@ -300,7 +316,7 @@ impl<'a> PacketTracer<'a> {
         if self.scene.surfaces().is_occluded(&ray, view.distance, None) {
             return;
         }
-        let met = rivals.after(vertex.material.pdf(outgoing, vertex.arriving, vertex.hero), 1.0).meets;
+        let met = rivals.after(self.onwards(vertex, outgoing), 1.0).meets;
         let weight = 1.0 / (1.0 + view.density * view.density * met);
         let factor = weight * direction.dot(point.normal).abs() * view.response;
         self.bring(factor, splats.of(view.pixel, self.value.len()));

@@ -7,7 +7,9 @@
 //! Reference: J. T. Kajiya, *The Rendering Equation*, SIGGRAPH 1986.
 
 pub mod bidirectional;
+pub mod branches;
 pub mod frame;
+pub mod guide;
 pub mod light;
 pub mod limits;
 pub mod packet;

@@ -10,6 +10,9 @@
 //! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
 //! the path leaves the glass and says nothing about what the path is worth.
 //!
+//! Of two ways at a polished surface that the camera sees both are followed ([`super::branches`]); from diffuse surfaces paths may be guided
+//! ([`super::guide`]).
+//!
 //! With [`Follow::Specular`] it is the ray tracing of T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23 (1980).
 //!
 //! References: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, thesis, Stanford 1997, ch. 9 and 10; J. Arvo &
@@ -17,17 +20,26 @@
 
 use glam::DVec3;
 
+use super::branches::{Branches, Carried};
 use super::frame::Frame;
+use super::guide::{self, Guide};
 use super::limits::{Follow, Limits};
 use super::polarisation::Polarisation;
 use super::virtual_lights::{DRAWS, VirtualLights};
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
-use crate::render::material::{Material, Transport};
+use crate::render::material::{Material, Scattered, Transport};
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 use crate::render::sensor::response::Response;
+
+/// Of two ways at a polished surface both are followed if the fainter of them has no less than this share of the path.
+const FAINTEST: f64 = 0.002;
+/// Fainter ways than this are mostly not followed beyond the first surface that is not polished.
+const SEEN: f64 = 0.05;
+/// The last number below 1.
+const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// The path tracer of one thread: it owns what a path needs, so that no sample allocates.
 #[derive(Debug)]
@@ -51,6 +63,12 @@ pub struct PathTracer<'a> {
     polarisation: Polarisation,
     /// Where packets of flux compete ([`super::bidirectional`]): the probabilities with which they start from the lights.
     packets: Option<&'a Shares>,
+    /// Where paths go on from diffuse surfaces.
+    guide: Option<&'a Guide>,
+    /// Directions that were weighed by it.
+    guided: u64,
+    /// The other ways at polished surfaces.
+    branches: Branches<Edge>,
     /// What lights diffuse surfaces in place of paths from one to another.
     virtual_lights: Option<VirtualLights<'a>>,
     /// Searches along a ray so far.
@@ -76,12 +94,40 @@ struct Edge {
     shared: f64,
     /// n² of the medium that it is in, over that where the path began.
     index_squared: f64,
+    /// Which edge of the path it is, from 1.
+    count: u32,
+    /// It leads from the camera over nothing but polished surfaces.
+    straight: bool,
+    /// The share of the light on the way that the path went at polished surfaces where it went both ways.
+    chance: f64,
+    /// How much likelier its direction is by guiding than by the material, at least 1: so much more the path is worth than it carries.
+    guided: f64,
+}
+
+/// A vertex.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    material: &'a dyn Material,
+    point: &'a SurfacePoint,
+    frame: &'a Frame,
+    outgoing: DVec3,
 }
 
 impl Edge {
     /// The first of a path.
     fn first(ray: Ray, pdf: Option<f64>, from: DVec3) -> Self {
-        Self { ray, pdf, from, rival: 0.0, shared: 0.0, index_squared: 1.0 }
+        Self {
+            ray,
+            pdf,
+            from,
+            rival: 0.0,
+            shared: 0.0,
+            index_squared: 1.0,
+            count: 1,
+            straight: false,
+            chance: 1.0,
+            guided: 1.0,
+        }
     }
 }
 
@@ -107,6 +153,9 @@ impl<'a> PathTracer<'a> {
             seen: None,
             polarisation: Polarisation::new(n),
             packets: None,
+            guide: None,
+            guided: 0,
+            branches: Branches::default(),
             virtual_lights: None,
             searches: 0,
             picture_sr: 0.0,
@@ -126,6 +175,12 @@ impl<'a> PathTracer<'a> {
         Self { virtual_lights: Some(virtual_lights), ..self }
     }
 
+    /// The same, guided from diffuse surfaces: see [`super::guide`].
+    #[must_use]
+    pub fn guided(self, guide: Option<&'a Guide>) -> Self {
+        Self { guide, ..self }
+    }
+
     /// The virtual lights that it was given.
     pub fn virtual_lights(&mut self) -> Option<&mut VirtualLights<'a>> {
         self.virtual_lights.as_mut()
@@ -135,7 +190,7 @@ impl<'a> PathTracer<'a> {
     #[must_use]
     pub fn effort(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a measure of work")]
-        let searches = self.searches as f64;
+        let searches = self.searches as f64 + guide::EFFORT * self.guided as f64;
         searches + self.virtual_lights.as_ref().map_or(0.0, VirtualLights::effort)
     }
 
@@ -149,7 +204,7 @@ impl<'a> PathTracer<'a> {
     pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
         self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
-        self.follow(Edge::first(ray, None, ray.origin), sampler);
+        self.follow(Edge { straight: true, ..Edge::first(ray, None, ray.origin) }, sampler);
         &self.radiance
     }
 
@@ -228,8 +283,17 @@ impl<'a> PathTracer<'a> {
     }
 
     fn follow(&mut self, start: Edge, sampler: &mut Sampler) {
+        self.follow_one(start, sampler);
+        while let Some((mut carried, edge)) = self.branches.pop() {
+            self.exchange(&mut carried);
+            self.branches.give_back(carried);
+            self.follow_one(edge, sampler);
+        }
+    }
+
+    fn follow_one(&mut self, start: Edge, sampler: &mut Sampler) {
         let mut edge = start;
-        for count in 1.. {
+        loop {
             self.searches += 1;
             let Some((surface, crossing)) = self.scene.surfaces().closest(&edge.ray, f64::INFINITY) else {
                 self.escape(&edge);
@@ -237,14 +301,23 @@ impl<'a> PathTracer<'a> {
             };
             let point = self.scene.surfaces().surface_point(surface, &edge.ray, &crossing);
             self.emission(&edge, surface, &point);
-            if self.limits.max_edges.is_some_and(|max| count >= max) {
+            if self.limits.max_edges.is_some_and(|max| edge.count >= max) {
                 return;
             }
-            match self.scatter(&edge, surface, &point, count, sampler) {
+            match self.scatter(&edge, surface, &point, sampler) {
                 Some(next) => edge = next,
                 None => return,
             }
         }
+    }
+
+    /// Carries what waited, which takes what was carried.
+    fn exchange(&mut self, other: &mut Carried) {
+        std::mem::swap(&mut self.throughput, &mut other.throughput);
+        std::mem::swap(&mut self.polarisation, &mut other.polarisation);
+        std::mem::swap(&mut self.split, &mut other.split);
+        std::mem::swap(&mut self.hero, &mut other.hero);
+        std::mem::swap(&mut self.seen, &mut other.seen);
     }
 
     /// Adds what a ray meets that leaves the scene.
@@ -281,14 +354,8 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Seeks a light from a vertex and draws the next edge.
-    fn scatter(
-        &mut self,
-        edge: &Edge,
-        surface: usize,
-        point: &SurfacePoint,
-        count: u32,
-        sampler: &mut Sampler,
-    ) -> Option<Edge> {
+    fn scatter(&mut self, edge: &Edge, surface: usize, point: &SurfacePoint, sampler: &mut Sampler) -> Option<Edge> {
+        let count = edge.count;
         let material = self.scene.material(surface);
         let frame = Frame::of(point.shading, point.tangent);
         let outgoing = frame.local(-edge.ray.direction);
@@ -306,12 +373,21 @@ impl<'a> PathTracer<'a> {
         if material.splits() {
             self.split();
         }
+        let seek = !material.is_delta();
+        let mut chance = edge.chance;
+        if seek && edge.straight && chance < SEEN {
+            // On the faintest ways nothing but lamps is bright enough to be looked for every time.
+            if sampler.one() * SEEN >= chance {
+                return None;
+            }
+            self.throughput.iter_mut().for_each(|t| *t *= SEEN / chance);
+            chance = SEEN;
+        }
         let shares = !self.split && material.is_diffuse() && self.virtual_lights.is_some();
         if shares && self.is_found(edge, point, sampler) {
             return None;
         }
         let hero = self.hero;
-        let seek = !material.is_delta();
         // From the first vertex a packet is connected with the lens, unless it lands on a meter as on any surface.
         let connected = count == 1 && !self.lands;
         let rival = match connected {
@@ -320,6 +396,7 @@ impl<'a> PathTracer<'a> {
             true => 0.0,
             false => edge.rival,
         };
+        let guided = self.guide.filter(|_| guide::suits(material)).map(|guide| guide.at(point.position));
         // How a packet that comes from `incident` is sent on the way that the path came.
         let sent = |incident| if !connected && rival > 0.0 { material.pdf(incident, outgoing, hero) } else { 1.0 };
         if seek {
@@ -328,6 +405,7 @@ impl<'a> PathTracer<'a> {
             let competes = self.limits.follow == Follow::All;
             let function = |incident, value: &mut [f64]| {
                 let pdf = evaluate(material, incident, outgoing, hero, value);
+                let pdf = guided.map_or(pdf, |g| g.density(frame.world(incident), pdf));
                 [if competes { pdf } else { 0.0 }, rival * sent(incident)]
             };
             self.light(point, u, function, &frame);
@@ -339,10 +417,95 @@ impl<'a> PathTracer<'a> {
             return None;
         }
         let [u0, u1, u2, u3] = sampler.four();
-        let drawn = material.sample(outgoing, [u0, u1, u2], Transport::Radiance, hero, &mut self.value)?;
+        let at = Place { material, point, frame: &frame, outgoing };
+        let mut here = Edge { straight: edge.straight && !seek, chance, ..*edge };
+        // Either way of a Dirac lobe is as probable as the other; no packet comes to the lens from it.
+        here.rival = if connected { 0.0 } else { rival };
+        let drawn = match guided.and_then(|g| g.draw(sampler.four())) {
+            Some(direction) => {
+                let incident = frame.local(direction);
+                let pdf = evaluate(material, incident, outgoing, hero, &mut self.value);
+                // On the other side of the surface.
+                if pdf == 0.0 {
+                    return None;
+                }
+                self.value.iter_mut().for_each(|v| *v /= pdf);
+                Scattered { direction: incident, pdf, delta: false, split: false, eta: 1.0 }
+            }
+            None => self.draw(&at, [u0, u1, u2])?,
+        };
         if self.limits.follow == Follow::Specular && !drawn.delta {
             return None;
         }
+        if drawn.delta {
+            if here.straight && self.branch(&here, &at, &drawn, [u1, u2, u3]) {
+                here.chance *= drawn.pdf;
+                self.value.iter_mut().for_each(|v| *v *= drawn.pdf);
+            }
+            return self.onwards(&here, &at, &drawn, u3);
+        }
+        // By all ways of drawing the direction; the material's own may not know it.
+        let pdf = guided.map_or(drawn.pdf, |g| g.density(frame.world(drawn.direction), drawn.pdf));
+        if guided.is_some() {
+            let scale = drawn.pdf / pdf;
+            self.guided += 2;
+            self.value.iter_mut().for_each(|v| *v *= scale);
+            here.guided = (pdf / drawn.pdf).max(1.0);
+        } else {
+            here.guided = 1.0;
+        }
+        here.rival = rival * sent(drawn.direction) / pdf;
+        let next = self.onwards(&here, &at, &drawn, u3)?;
+        let shared = if shares { drawn.direction.z.abs() } else { 0.0 };
+        Some(Edge { pdf: seek.then_some(pdf), shared, ..next })
+    }
+
+    /// Draws a direction at a vertex.
+    fn draw(&mut self, at: &Place<'_>, u: [f64; 3]) -> Option<Scattered> {
+        let (material, hero) = (at.material, self.hero);
+        // Beside packets each way must be as probable for them as for the path, and they may still carry all bands.
+        if self.split && self.packets.is_none() {
+            material.sample_band(at.outgoing, u, Transport::Radiance, hero, &mut self.value)
+        } else {
+            material.sample(at.outgoing, u, Transport::Radiance, hero, &mut self.value)
+        }
+    }
+
+    /// Sets the other of two Dirac lobes aside, to be followed later; not where they are not two, or one of them is too faint. What was drawn
+    /// of the one stays.
+    fn branch(&mut self, edge: &Edge, at: &Place<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
+        if edge.chance * drawn.pdf.min(1.0 - drawn.pdf) < FAINTEST {
+            return false;
+        }
+        std::mem::swap(&mut self.value, &mut self.arriving);
+        // One of them is drawn by the smallest number, the other by the largest: which is which nobody says.
+        let ends = if drawn.direction.z * at.outgoing.z > 0.0 { [LAST, 0.0] } else { [0.0, LAST] };
+        let other = ends.into_iter().find_map(|end| {
+            self.draw(at, [end, u1, u2]).filter(|other| {
+                // They are all that there is.
+                other.delta && other.direction != drawn.direction && (other.pdf + drawn.pdf - 1.0).abs() < 1e-9
+            })
+        });
+        if let Some(other) = other {
+            let mut aside = self.branches.take(self.throughput.len());
+            aside.throughput.copy_from_slice(&self.throughput);
+            aside.polarisation.copy(&self.polarisation);
+            (aside.split, aside.hero, aside.seen) = (self.split, self.hero, self.seen);
+            self.value.iter_mut().for_each(|v| *v *= other.pdf);
+            let next = self.onwards(&Edge { chance: edge.chance * other.pdf, ..*edge }, at, &other, u);
+            self.exchange(&mut aside);
+            match next {
+                Some(next) => self.branches.push(aside, next),
+                None => self.branches.give_back(aside),
+            }
+        }
+        std::mem::swap(&mut self.value, &mut self.arriving);
+        other.is_some()
+    }
+
+    /// Goes on in a direction that was drawn, with what [`Material::sample`] wrote; `edge` is the one that leads there, with what the next has of it.
+    fn onwards(&mut self, edge: &Edge, at: &Place<'_>, drawn: &Scattered, u: f64) -> Option<Edge> {
+        let Place { material, point, frame, outgoing } = *at;
         let direction = frame.world(drawn.direction);
         // A shading normal can send light through the surface: no light goes there.
         if direction.dot(point.normal) * drawn.direction.z <= 0.0 {
@@ -350,8 +513,14 @@ impl<'a> PathTracer<'a> {
         }
         multiply(&mut self.throughput, &self.value);
         if self.limits.polarisation && drawn.delta {
-            let components = |c: &mut [_]| material.polarise(outgoing, drawn.direction, c);
-            self.polarisation.turn(components, [edge.ray.direction, direction], point.shading, &mut self.throughput);
+            let (hero, directions) = (self.hero, [edge.ray.direction, direction]);
+            let bands = if self.split { hero..hero + 1 } else { 0..self.throughput.len() };
+            let components = |c: &mut [_]| match bands.len() {
+                1 => material.polarise_band(outgoing, drawn.direction, hero, c),
+                _ => material.polarise(outgoing, drawn.direction, c),
+            };
+            let throughput = &mut self.throughput;
+            self.polarisation.turn_bands(components, directions, point.shading, bands.clone(), throughput);
         } else {
             self.polarisation.clear();
         }
@@ -360,9 +529,10 @@ impl<'a> PathTracer<'a> {
         }
         let index_squared = edge.index_squared * drawn.eta * drawn.eta;
         let drawn_for = if self.limits.single_band { self.probability_of_hero() } else { 1.0 };
-        let strength = index_squared * drawn_for * self.throughput.iter().copied().fold(0.0, f64::max);
-        if count >= self.limits.roulette_from && strength < 1.0 {
-            if u3 >= strength {
+        let worth = index_squared * drawn_for * edge.guided / edge.chance;
+        let strength = worth * self.throughput.iter().copied().fold(0.0, f64::max);
+        if edge.count >= self.limits.roulette_from && strength < 1.0 {
+            if u >= strength {
                 return None;
             }
             self.throughput.iter_mut().for_each(|t| *t /= strength);
@@ -371,15 +541,8 @@ impl<'a> PathTracer<'a> {
             return None;
         }
         let ray = Ray { origin: point.origin_towards(direction), direction };
-        let rival = match drawn.delta {
-            // Either way of a Dirac lobe is as probable as the other.
-            true if connected => 0.0,
-            true => rival,
-            false => rival * sent(drawn.direction) / drawn.pdf,
-        };
-        let pdf = (seek && !drawn.delta).then_some(drawn.pdf);
-        let shared = if shares { drawn.direction.z.abs() } else { 0.0 };
-        Some(Edge { ray, pdf, from: point.position, rival, shared, index_squared })
+        let count = edge.count + 1;
+        Some(Edge { ray, pdf: None, from: point.position, shared: 0.0, index_squared, count, ..*edge })
     }
 
     /// The density with which packets find a path whose last edge leads from `from` to a light, over that of the path's own way, given

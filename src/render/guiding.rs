@@ -1,0 +1,142 @@
+//! What guides the paths of a picture, learnt from packets that are sent before it is taken: [`Guide`].
+//!
+//! Packets go out in rounds of a fixed number of streams, each by itself, until enough of them landed over polished surfaces; what the streams
+//! found is put together in their order, so that the same guide comes out for any number of threads.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::estimate::stream;
+use super::integrator::guide::{self, Guide, Landing, Landings};
+use super::integrator::limits::{Follow, Limits};
+use super::integrator::packet::{Packet, Vertex};
+use super::light::shares::Shares;
+use super::material::Transport;
+use super::measure::Settings;
+use super::sampler::Sampler;
+use super::scene::Scene;
+
+/// Independent streams of packets.
+const STREAMS: usize = 64;
+/// Rounds, at most.
+const ROUNDS: u64 = 8;
+/// Packets of all rounds, at least and at most.
+const PACKETS: [u64; 2] = [1 << 16, 1 << 23];
+/// So many landings are enough.
+const ENOUGH: usize = 1 << 19;
+/// One landing of so many packets of the first round is too few: others do not look for more.
+const RARE: usize = 4096;
+
+/// Whether there is anything to be guided: a surface that is not polished, and one that is.
+#[must_use]
+pub fn suits(scene: &Scene, limits: &Limits) -> bool {
+    let materials = || (0..scene.surfaces().shapes().len()).map(|surface| scene.material(surface));
+    limits.follow == Follow::All && materials().any(guide::suits) && materials().any(|m| m.has_delta())
+}
+
+/// Learns from about `wanted` packets, the random numbers of which are those of the instrument `instrument`. `None` where none is of help.
+#[must_use]
+pub fn learn(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -> Option<Guide> {
+    if !suits(scene, &settings.limits) {
+        return None;
+    }
+    let shares = Shares::new(scene.lights(), scene.bands().len());
+    let per_round = wanted.clamp(PACKETS[0], PACKETS[1]).div_ceil(ROUNDS * STREAMS as u64);
+    let mut found = Landings::default();
+    for round in 0..ROUNDS {
+        let parts: Vec<Landings> = (0..STREAMS)
+            .into_par_iter()
+            .map(|number| {
+                let mut learner = Learner::new(scene, settings, &shares);
+                let mut sampler = settings.sampler(stream(instrument, number));
+                for index in round * per_round..(round + 1) * per_round {
+                    sampler.start(index);
+                    learner.packet(&mut sampler);
+                }
+                learner.landings
+            })
+            .collect();
+        for mut part in parts {
+            found.polished.append(&mut part.polished);
+            found.plain.append(&mut part.plain);
+        }
+        let rare = found.polished.len() * RARE < STREAMS * usize::try_from(per_round).unwrap_or(usize::MAX);
+        if rare || found.polished.len() >= ENOUGH {
+            break;
+        }
+    }
+    Guide::new(found)
+}
+
+/// Follows packets, of one stream.
+struct Learner<'a> {
+    scene: &'a Scene,
+    packet: Packet<'a>,
+    /// The longest path of a packet, edges.
+    most_edges: Option<u32>,
+    value: Vec<f64>,
+    landings: Landings,
+}
+
+impl<'a> Learner<'a> {
+    fn new(scene: &'a Scene, settings: &'a Settings, shares: &'a Shares) -> Self {
+        Self {
+            scene,
+            packet: Packet::new(scene, settings.limits, &settings.heroes, shares),
+            most_edges: settings.limits.max_edges.map(|max| max.saturating_sub(1)),
+            value: vec![0.0; scene.bands().len()],
+            landings: Landings::default(),
+        }
+    }
+
+    /// Makes of the numbers that draw one of two Dirac lobes some that draw either as often, so that what is lit by the fainter alone is known as
+    /// well; gives the weight of what they draw.
+    fn even(&mut self, vertex: &Vertex<'_>, [u0, u1, u2, _]: &mut [f64; 4]) -> f64 {
+        let (material, arriving) = (vertex.material, vertex.arriving);
+        let mut draw = |end: f64| {
+            let drawn = material.sample(arriving, [end, *u1, *u2], Transport::Flux, vertex.hero, &mut self.value);
+            drawn.filter(|drawn| drawn.delta && drawn.pdf < 1.0).map(|drawn| drawn.pdf)
+        };
+        let end = if *u0 < 0.5 { 0.0 } else { 1.0 - f64::EPSILON / 2.0 };
+        let Some((pdf, other)) = draw(end).zip(draw(1.0 - f64::EPSILON / 2.0 - end)) else { return 1.0 };
+        if (pdf + other - 1.0).abs() > 1e-9 {
+            return 1.0;
+        }
+        *u0 = end;
+        2.0 * pdf
+    }
+
+    fn packet(&mut self, sampler: &mut Sampler) {
+        let Some((mut ray, origin)) = self.packet.emit(sampler) else { return };
+        // Whether the last surfaces were polished, and whether a path may meet what is before them.
+        let (mut polished, mut met, mut weight) = (false, false, 1.0);
+        for edges in 1.. {
+            if self.most_edges.is_some_and(|most| edges > most) {
+                return;
+            }
+            let Some((surface, crossing)) = self.scene.surfaces().closest(&ray, f64::INFINITY) else { return };
+            let Some(vertex) = self.packet.vertex(&ray, surface, &crossing) else { return };
+            if edges == 1 {
+                met = self.scene.lights()[origin.light].pdf_towards(vertex.point.position, vertex.back) > 0.0;
+            }
+            self.packet.arrive(&vertex, sampler);
+            if edges > 1 && met && guide::suits(vertex.material) {
+                let up = DVec3::new(0.0, 0.0, vertex.arriving.z.signum());
+                vertex.material.evaluate(vertex.arriving, up, Transport::Radiance, &mut self.value);
+                let seen = self.value.iter().any(|v| *v > 0.0);
+                let landing = Landing { position: vertex.point.position, back: vertex.back, weight };
+                match (seen, polished) {
+                    (false, _) => {}
+                    (true, true) => self.landings.polished.push(landing),
+                    (true, false) => self.landings.plain.push(landing),
+                }
+            }
+            let mut u = sampler.four();
+            weight *= self.even(&vertex, &mut u);
+            let Some((next, drawn)) = self.packet.scatter(&vertex, u) else { return };
+            polished = drawn.delta;
+            met |= !drawn.delta;
+            ray = next;
+        }
+    }
+}

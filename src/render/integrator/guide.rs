@@ -1,0 +1,310 @@
+//! Guiding: where a path goes on from a diffuse surface, by what packets from the lights came there through glass and off mirrors.
+//!
+//! What glass gathers on a floor is light that comes from a few directions, and a path that leaves the floor in any direction seldom runs
+//! through the glass into the lamp: a few samples are very bright, all others see none of it. Packets of flux that are sent before the picture is
+//! taken land there, and tell the directions. They are sorted into the leaves of a tree, some dozens in each, and a direction is drawn by
+//!
+//! ```text
+//! p(ω) = a g(ω) + (1 − a) p_f(ω)
+//! g(ω) = Σ_j w_j [ (1 − t) C(|ω − ω_j|; r_j) + t C(|ω − ω_j|; 3 r_j) ] / Σ_j w_j,    C(d; r) = 1/(π r²) for d < r, else 0
+//! ```
+//!
+//! ω_j, w_j: directions that the packets of the leaf came from, and their flux (they go either way at glass alike, so that places that the fainter of
+//! both alone lights are known as well); r_j: 3/2 of the distance from ω_j to the third nearest other of them; C is uniform on
+//! a cap of the sphere, whose area is π r² for the chord r; p_f: the material's own density. The share a is the larger the more of the packets
+//! that come to the leaf in a roundabout way came over polished surfaces, and never is 1, so that no direction is left out. The density is known
+//! for every direction, so that nothing is biased, whatever the packets found; it takes the place of the material's wherever ways of finding
+//! a light are weighed against each other.
+//!
+//! The packets have random numbers of their own and are sent once: nothing depends on the samples that count.
+//!
+//! What cannot be guided are lights without extent behind glass, which no path meets.
+//!
+//! References: H. W. Jensen, *Importance Driven Path Tracing using the Photon Map*, EGWR 1995; J. Vorba et al., *On-line Learning of Parametric
+//! Mixture Models for Light Transport Simulation*, SIGGRAPH 2014; T. Müller, M. Gross, J. Novák, *Practical Path Guiding for Efficient
+//! Light-Transport Simulation*, EGSR 2017 (the tree); E. Veach, thesis, Stanford 1997, ch. 9 (one sample of several densities).
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::geometry::direction::tangents;
+use crate::math::sampling::{cone, split};
+use crate::render::material::Material;
+
+/// Most packets of a leaf.
+const LEAF: usize = 64;
+/// Fewer landings than this say nothing.
+const LEAST: usize = 256;
+/// Which of the nearest other directions tells how wide a cap is, and how much wider it is than that.
+const NEAREST: usize = 3;
+const WIDER: f64 = 1.5;
+/// The share of the wide caps, and how much wider they are.
+const TAIL: f64 = 0.2;
+const WIDE: f64 = 3.0;
+/// r_j² is within these bounds: a needle of 0.1 mrad, and wide caps of no more than the sphere.
+const SQUARES: [f64; 2] = [1e-8, 4.0 / (WIDE * WIDE)];
+/// The share of guided directions is within these bounds.
+const SHARES: [f64; 2] = [0.1, 0.7];
+/// The time in which a direction's density is found, in searches along a ray, about.
+pub const EFFORT: f64 = 0.3;
+
+/// Where a packet came to a diffuse surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landing {
+    /// The place, m.
+    pub position: DVec3,
+    /// Unit vector to where the packet came from.
+    pub back: DVec3,
+    /// Its flux, in terms of that of others.
+    pub weight: f64,
+}
+
+/// Where packets came to diffuse surfaces.
+#[derive(Debug, Clone, Default)]
+pub struct Landings {
+    /// Over polished surfaces, from a diffuse surface or from a light that a path can meet.
+    pub polished: Vec<Landing>,
+    /// Straight from another surface that is not polished.
+    pub plain: Vec<Landing>,
+}
+
+/// The directions of all places.
+#[derive(Debug, Clone)]
+pub struct Guide {
+    nodes: Vec<Node>,
+    caps: Vec<Cap>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Node {
+    /// Below a coordinate the next node, else another.
+    Split { axis: usize, at: f64, above: usize },
+    /// Its caps, and the share a.
+    Leaf { first: usize, end: usize, share: f64 },
+}
+
+/// Of chord √`square` about `axis`.
+#[derive(Debug, Clone, Copy)]
+struct Cap {
+    axis: DVec3,
+    square: f64,
+    /// w (1 − t)/(π r²) over Σ w of the leaf.
+    density: f64,
+    /// Running sum, up to 1, of w over Σ w.
+    end: f64,
+}
+
+/// The directions of one place.
+#[derive(Debug, Clone, Copy)]
+pub struct Guided<'a> {
+    caps: &'a [Cap],
+    share: f64,
+}
+
+/// Whether paths that come to a material may be guided.
+#[must_use]
+pub fn suits(material: &dyn Material) -> bool {
+    material.is_diffuse() && !material.has_delta()
+}
+
+impl Guide {
+    /// Of some landings; `None` where they are too few.
+    #[must_use]
+    pub fn new(mut landings: Landings) -> Option<Self> {
+        let mut guide = Self { nodes: Vec::new(), caps: Vec::new() };
+        if landings.polished.len() < LEAST {
+            return None;
+        }
+        guide.grow(&mut landings.polished);
+        let mut plain = vec![0.0; guide.nodes.len()];
+        landings.plain.iter().for_each(|landing| plain[guide.leaf(landing.position)] += landing.weight);
+        for (node, plain) in guide.nodes.iter_mut().zip(plain) {
+            if let Node::Leaf { share, .. } = node {
+                // Until here that is the weight of all landings.
+                *share = (SHARES[1] * *share / (*share + plain)).max(SHARES[0]);
+            }
+        }
+        Some(guide)
+    }
+
+    /// Adds the node of some landings and all below it.
+    fn grow(&mut self, landings: &mut [Landing]) {
+        if landings.len() <= LEAF {
+            let first = self.caps.len();
+            self.caps.extend(caps(landings));
+            let weight = landings.iter().map(|landing| landing.weight).sum();
+            self.nodes.push(Node::Leaf { first, end: self.caps.len(), share: weight });
+            return;
+        }
+        let positions = || landings.iter().map(|landing| landing.position);
+        let extent = positions().fold(DVec3::NEG_INFINITY, DVec3::max) - positions().fold(DVec3::INFINITY, DVec3::min);
+        let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+        // Stable, so that the order of equals is that of the packets.
+        landings.sort_by(|a, b| a.position[axis].total_cmp(&b.position[axis]));
+        let (below, above) = landings.split_at_mut(landings.len() / 2);
+        let (node, at) = (self.nodes.len(), above[0].position[axis]);
+        self.nodes.push(Node::Split { axis, at, above: 0 });
+        self.grow(below);
+        let next = self.nodes.len();
+        self.nodes[node] = Node::Split { axis, at, above: next };
+        self.grow(above);
+    }
+
+    /// The leaf of a place.
+    fn leaf(&self, position: DVec3) -> usize {
+        let mut node = 0;
+        while let Node::Split { axis, at, above } = self.nodes[node] {
+            node = if position[axis] < at { node + 1 } else { above };
+        }
+        node
+    }
+
+    /// The directions of a place.
+    #[must_use]
+    pub fn at(&self, position: DVec3) -> Guided<'_> {
+        match self.nodes[self.leaf(position)] {
+            Node::Leaf { first, end, share } => Guided { caps: &self.caps[first..end], share },
+            Node::Split { .. } => Guided { caps: &[], share: 0.0 },
+        }
+    }
+
+    /// The density with which a path goes on from a place of a material into a direction, given that of the material's own sampling, 1/sr.
+    #[must_use]
+    pub fn density(&self, material: &dyn Material, position: DVec3, direction: DVec3, own: f64) -> f64 {
+        if suits(material) { self.at(position).density(direction, own) } else { own }
+    }
+}
+
+/// The caps of a leaf.
+fn caps(landings: &[Landing]) -> impl Iterator<Item = Cap> {
+    let mut squares = Vec::with_capacity(landings.len());
+    let (mut sum, total) = (0.0, landings.iter().map(|landing| landing.weight).sum::<f64>());
+    landings.iter().map(move |landing| {
+        squares.clear();
+        squares.extend(landings.iter().map(|other| landing.back.distance_squared(other.back)));
+        // The direction itself is the nearest of all.
+        let (_, nearest, _) = squares.select_nth_unstable_by(NEAREST, f64::total_cmp);
+        let square = (*nearest * WIDER * WIDER).clamp(SQUARES[0], SQUARES[1]);
+        sum += landing.weight;
+        let density = landing.weight / total * (1.0 - TAIL) / (PI * square);
+        Cap { axis: landing.back, square, density, end: sum / total }
+    })
+}
+
+impl Guided<'_> {
+    /// p(ω) of a unit vector in the world, given p_f, 1/sr.
+    #[must_use]
+    pub fn density(&self, direction: DVec3, own: f64) -> f64 {
+        const FAINTER: f64 = TAIL / (1.0 - TAIL) / (WIDE * WIDE);
+        let sum: f64 = (self.caps.iter())
+            .map(|cap| {
+                // Of unit vectors, the squared distance.
+                let square = 2.0 - 2.0 * cap.axis.dot(direction);
+                let inner = if square < cap.square { 1.0 } else { 0.0 };
+                let outer = if square < WIDE * WIDE * cap.square { FAINTER } else { 0.0 };
+                (inner + outer) * cap.density
+            })
+            .sum();
+        self.share * sum + (1.0 - self.share) * own
+    }
+
+    /// Draws a direction of g; `None`, with the probability 1 − a, where the material's own sampling is to draw one.
+    #[must_use]
+    pub fn draw(&self, [choice, tail, u, v]: [f64; 4]) -> Option<DVec3> {
+        let (guided, choice) = split(choice, self.share);
+        if !guided {
+            return None;
+        }
+        let index = self.caps.partition_point(|cap| cap.end <= choice);
+        let cap = self.caps.get(index).or(self.caps.last())?;
+        let square = if tail < TAIL { WIDE * WIDE * cap.square } else { cap.square };
+        // A chord r spans the angle τ with r² = 2 (1 − cos τ).
+        let local = cone([u, v], 0.5 * square);
+        let (x, y) = tangents(cap.axis);
+        Some(local.x * x + local.y * y + local.z * cap.axis)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+    use crate::math::sampling::cosine_hemisphere;
+
+    /// Landings all over a square, from a few directions and from one patch of the hemisphere.
+    fn landings(count: usize) -> Landings {
+        let mut numbers = Stream::new(3, 4);
+        let mut polished = Vec::new();
+        for i in 0..count {
+            let position = DVec3::new(numbers.uniform(), numbers.uniform(), 0.0);
+            let [u, v] = [numbers.uniform(), numbers.uniform()];
+            let back = match i % 3 {
+                0 => DVec3::new(0.6, 0.0, 0.8),
+                1 => cosine_hemisphere([u, v]),
+                _ => cone([u, v], 0.01),
+            };
+            polished.push(Landing { position, back, weight: 0.5 + numbers.uniform() });
+        }
+        let plain = Landing { position: DVec3::new(0.1, 0.1, 0.0), back: DVec3::Z, weight: 1.0 };
+        Landings { polished, plain: vec![plain; 500] }
+    }
+
+    #[test]
+    fn too_few_landings_guide_nothing() {
+        assert!(Guide::new(landings(LEAST - 1)).is_none());
+        assert!(Guide::new(landings(LEAST)).is_some());
+    }
+
+    /// The density is that of the draws: the mean of h(ω)/p(ω) over them is ∫ h dω, which of h = 1 is 4π and of h = max(0, z) is π; here p_f is
+    /// uniform over the sphere, so that no direction is left out. And every leaf has its share of own draws.
+    #[test]
+    fn directions_are_drawn_by_their_density() {
+        let guide = Guide::new(landings(5000)).expect("a guide");
+        let mut numbers = Stream::new(5, 6);
+        let n = 200_000;
+        for position in [DVec3::new(0.1, 0.1, 0.0), DVec3::new(0.7, 0.2, 0.0), DVec3::new(5.0, -3.0, 1.0)] {
+            let guided = guide.at(position);
+            assert!(!guided.caps.is_empty() && guided.caps.len() <= LEAF);
+            let (mut whole, mut upper, mut squares, mut own) = (0.0, 0.0, [0.0; 2], 0.0);
+            for _ in 0..n {
+                let u = std::array::from_fn(|_| numbers.uniform());
+                let direction = guided.draw(u).unwrap_or_else(|| {
+                    own += 1.0;
+                    cone([numbers.uniform(), numbers.uniform()], 2.0)
+                });
+                assert!((direction.length() - 1.0).abs() < 1e-12);
+                let p = guided.density(direction, 0.25 / PI);
+                let (a, b) = (1.0 / p, direction.z.max(0.0) / p);
+                (whole, upper) = (whole + a, upper + b);
+                squares = [squares[0] + a * a, squares[1] + b * b];
+            }
+            let n = f64::from(n);
+            for (sum, square, expected) in [(whole, squares[0], 4.0 * PI), (upper, squares[1], PI)] {
+                let error = ((square / n - (sum / n).powi(2)) / n).sqrt();
+                // Five standard errors.
+                assert!((sum / n - expected).abs() < 5.0 * error, "{} ± {error}, {expected}", sum / n);
+            }
+            let expected = 1.0 - guided.share;
+            assert!((own / n - expected).abs() < 5.0 * (expected * guided.share / n).sqrt(), "{own} {expected}");
+        }
+        // Where much comes in other ways, the share is less.
+        assert!(guide.at(DVec3::new(0.1, 0.1, 0.0)).share < guide.at(DVec3::new(0.9, 0.9, 0.0)).share);
+    }
+
+    /// A direction that a third of the packets came from is found by a third of the guided draws, into caps of 0.1 mrad.
+    #[test]
+    fn one_direction_is_found_again() {
+        let guide = Guide::new(landings(5000)).expect("a guide");
+        let guided = guide.at(DVec3::new(0.7, 0.7, 0.0));
+        let there = DVec3::new(0.6, 0.0, 0.8);
+        let of = |cap: &&Cap| cap.axis == there;
+        let count = guided.caps.iter().filter(of).count();
+        assert!(count > 3, "{count}");
+        let own = 1.0 / PI;
+        // The least weight is a third of the greatest.
+        let share = count as f64 / 3.0 / guided.caps.len() as f64;
+        let expected = guided.share * share * (1.0 - TAIL) / (PI * SQUARES[0]);
+        assert!(guided.density(there, own) > expected, "{expected}");
+    }
+}
