@@ -18,6 +18,7 @@ use super::sampler::Sampler;
 use super::scatter::{self, Scatter, Scattered};
 use super::scene::Scene;
 use super::sensor::camera::Camera;
+use super::trial::{self, Attempt, Way};
 use crate::image::description::{Channel, Content, Description, Meaning};
 use crate::image::error::Error;
 use crate::image::source::{self, Region, Source};
@@ -26,7 +27,7 @@ use crate::spectrum::{Per, Quantity, SpectralUnit};
 /// One of so many samples is spent on the survey.
 const SURVEY: u64 = 16;
 
-/// Streams of another instrument are the survey's, others those of the trial of virtual lights: the picture's own numbers stay unknown.
+/// Streams of another instrument are the survey's, others those of the trial: the picture's own numbers stay unknown.
 const SURVEYED: u64 = u32::MAX as u64;
 const TRIAL: u64 = SURVEYED - 1;
 /// And those of the packets that guide.
@@ -42,6 +43,11 @@ const VIRTUAL: u64 = 1 << 30;
 #[must_use]
 pub fn survey_samples(samples: u64) -> u64 {
     samples / SURVEY
+}
+
+/// Rays of the camera for so many samples: two at least where there are two samples, as one does not tell its noise.
+fn rays(samples: u64, branches: u32) -> u64 {
+    samples.div_ceil(u64::from(branches)).max(samples.min(2))
 }
 
 /// A picture that is rendered when it is read.
@@ -60,6 +66,8 @@ pub struct Film<'a, F> {
     /// Number of the instrument in the render.
     instrument: u64,
     samples: u64,
+    /// Rays of the camera for each pixel on average: each is of as many samples as it has branches.
+    rays: u64,
     /// Per band, what it adds to X, Y and Z.
     tristimulus: &'a [[f64; 3]],
     description: Description,
@@ -69,8 +77,7 @@ pub struct Film<'a, F> {
     shares: Option<Vec<u32>>,
     /// What virtual lights would be made of.
     source: Option<virtual_lights::Source>,
-    /// Whether they are used.
-    virtual_lights: bool,
+    way: Way,
     /// What guides the paths.
     guide: Option<Guide>,
     /// Where packets start, if they help.
@@ -111,12 +118,14 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         progress: F,
     ) -> Self {
         let description = description(scene.bands(), camera);
+        let branches = if settings.packets { 1 } else { settings.branches.unwrap_or(1) };
         Self {
             scene,
             camera,
             settings,
             instrument,
             samples,
+            rays: rays(samples, branches),
             tristimulus,
             description,
             progress,
@@ -125,15 +134,15 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             source: (settings.virtual_lights != Some(false) && !settings.packets)
                 .then(|| virtual_lights::Source::of(scene, &settings.limits))
                 .flatten(),
-            virtual_lights: settings.virtual_lights == Some(true),
+            way: Way { virtual_lights: settings.virtual_lights == Some(true), branches },
             guide: None,
             lights: settings.packets.then(|| Shares::new(scene.lights(), scene.bands().len())),
             packets: None,
         }
     }
 
-    /// Finds out whether guiding and virtual lights pay, where that was not said ([`Settings::guiding`], [`Settings::virtual_lights`]). An
-    /// adaptive picture is then looked at with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
+    /// Finds out whether guiding pays and which way of taking samples, where that was not said ([`Settings`]). An adaptive picture is then looked
+    /// at with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
     /// all): those of large relative error σ/(L + ε) get more.
     ///
     /// The samples that it took are thrown away, so that nothing that is done depends on the values of those that count, which would be a
@@ -147,8 +156,10 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         if !surveys {
             return;
         }
-        if self.settings.virtual_lights.is_none() && self.source.is_some() {
-            self.virtual_lights = self.cost(true, self.guide.as_ref()) < self.cost(false, self.guide.as_ref());
+        let most = trial::most_branches(self.samples);
+        if let Some(way) = trial::best(&self.ways(most), most, |way| self.attempt(way, self.guide.as_ref())) {
+            self.way = way;
+            self.rays = rays(self.samples, way.branches);
         }
         if !adaptive {
             return;
@@ -158,7 +169,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let rows: Vec<Vec<Scattered>> = (0..height)
             .into_par_iter()
             .map_init(
-                || self.tracer(self.virtual_lights, self.guide.as_ref()),
+                || self.tracer(Way { branches: 1, ..self.way }, self.guide.as_ref()),
                 |tracer, y| {
                     let row = self.surveyed(tracer, y, self.samples / SURVEY, SURVEYED);
                     (self.progress)(width as u64 * (self.samples / SURVEY));
@@ -167,7 +178,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             )
             .collect();
         rows.iter().enumerate().for_each(|(y, row)| scatter.add(y, row));
-        self.shares = Some(scatter.samples(self.samples));
+        self.shares = Some(scatter.samples(self.rays));
     }
 
     /// Sends the packets that help, if they were not sent yet.
@@ -198,38 +209,53 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let packets = pixels.saturating_mul(self.samples) / PACKET;
         let guide = guiding::learn(self.scene, self.settings, self.instrument + LEARNT, packets);
         // Packets to the lens are sent later and by it: the trial is that of the paths beside them.
+        let way = Way { branches: 1, ..self.way };
         self.guide = guide.filter(|guide| {
             self.settings.guiding.is_some()
-                || self.cost(self.virtual_lights, Some(guide)) < UNSEEN * self.cost(self.virtual_lights, None)
+                || self.attempt(way, Some(guide)).price() < UNSEEN * self.attempt(way, None).price()
         });
     }
 
-    /// The variance of paths with such helpers times the number of searches along rays, which is the same on every machine; by a few samples of every
-    /// eighth row.
-    fn cost(&self, virtual_lights: bool, guide: Option<&Guide>) -> f64 {
-        /// Samples of a pixel.
-        const SAMPLES: u64 = 4;
+    /// Ways of taking samples that are to be compared: without a choice one.
+    fn ways(&self, most_branches: u32) -> Vec<Way> {
+        let virtual_lights = match self.settings.virtual_lights {
+            None if self.source.is_some() => vec![false, true],
+            said => vec![said == Some(true)],
+        };
+        let branches = if self.settings.packets { Some(1) } else { self.settings.branches };
+        let tried = || trial::BRANCHES[..if most_branches > 1 { 2 } else { 1 }].to_vec();
+        let branches = branches.map_or_else(tried, |said| vec![said]);
+        let with = |virtual_lights| branches.iter().map(move |&branches| Way { virtual_lights, branches });
+        virtual_lights.into_iter().flat_map(with).collect()
+    }
+
+    /// The work and the noise of a way of taking samples, by a few samples of every eighth row.
+    fn attempt(&self, way: Way, guide: Option<&Guide>) -> Attempt {
+        // Rays of a pixel: two are the fewest that scatter.
+        let rays = if way.branches == 1 { 4 } else { 2 };
         let (width, height) = (self.description.width, self.description.height);
         let rows: Vec<usize> = (0..height).step_by(2 * scatter::BLOCK).collect();
         let rows: Vec<_> = (rows.into_par_iter())
             .map(|y| {
-                let mut tracer = self.tracer(virtual_lights, guide);
-                let row = self.surveyed(&mut tracer, y, SAMPLES, TRIAL);
+                let mut tracer = self.tracer(way, guide);
+                let row = self.surveyed(&mut tracer, y, rays, TRIAL);
                 (y, row, tracer.effort())
             })
             .collect();
         let mut scatter = Scatter::new(width, height);
         rows.iter().for_each(|(y, row, _)| scatter.add(*y, row));
-        rows.iter().map(|row| row.2).sum::<f64>() * scatter.noise().powi(2)
+        #[expect(clippy::cast_precision_loss, reason = "2 or 4")]
+        let work = rows.iter().map(|row| row.2).sum::<f64>() / rays as f64;
+        Attempt { way, work, variance: scatter.noise().powi(2) }
     }
 
-    fn tracer<'b>(&'b self, virtual_lights: bool, guide: Option<&'b Guide>) -> PathTracer<'b> {
+    fn tracer<'b>(&'b self, way: Way, guide: Option<&'b Guide>) -> PathTracer<'b> {
         let (limits, heroes) = (&self.settings.limits, &self.settings.heroes);
-        let tracer = PathTracer::new(self.scene, *limits, heroes).guided(guide);
+        let tracer = PathTracer::new(self.scene, *limits, heroes).guided(guide).branching(way.branches);
         match (&self.lights, &self.source) {
             (Some(shares), _) => tracer.beside(shares),
-            (None, Some(source)) if virtual_lights => {
-                tracer.with(VirtualLights::new(self.scene, limits, heroes, source))
+            (None, Some(source)) if way.virtual_lights => {
+                tracer.with(VirtualLights::new(self.scene, limits, heroes, source, way.branches))
             }
             (None, _) => tracer,
         }
@@ -238,19 +264,25 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     /// Luminances of some samples of each pixel of a row, by block; `streams` tells their random numbers from others.
     fn surveyed(&self, tracer: &mut PathTracer<'_>, y: usize, samples: u64, streams: u64) -> Vec<Scattered> {
         let width = self.description.width;
-        let mut row = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
-        let packets = self.packets.as_ref();
+        let mut pixels = vec![Gathered::default(); width];
         self.columns(
             tracer,
             y,
             (0..width, streams),
             |_| samples,
             |x, _, sample| {
-                let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
                 let luminance = sample.map_or(0.0, |s| s.iter().zip(self.tristimulus).map(|(s, t)| s * t[1]).sum());
-                row[x / scatter::BLOCK].add(luminance, known);
+                if f64::is_finite(luminance) {
+                    pixels[x].add(luminance);
+                }
             },
         );
+        let mut row = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
+        for (x, pixel) in pixels.iter().enumerate() {
+            let packets = self.packets.as_ref();
+            let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
+            row[x / scatter::BLOCK].add(pixel, known);
+        }
         row
     }
 
@@ -318,7 +350,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let channels: Vec<usize> = (0..this.description.channels.len()).collect();
         rows.par_iter()
             .map_init(
-                || this.tracer(this.virtual_lights, this.guide.as_ref()),
+                || this.tracer(this.way, this.guide.as_ref()),
                 |tracer, &y| {
                     let region = Region::rows(&this.description, y, 1);
                     let mut samples = vec![0.0; region.width * channels.len()];
@@ -333,7 +365,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let (width, bands) = (self.description.width, self.tristimulus.len());
         let mut pixels = vec![Gathered::default(); region.width];
         let mut sums = vec![0.0; region.width * bands];
-        let number = |x: usize| self.shares.as_ref().map_or(self.samples, |shares| u64::from(shares[y * width + x]));
+        let number = |x: usize| self.shares.as_ref().map_or(self.rays, |shares| u64::from(shares[y * width + x]));
         let mut together = Together::default();
         self.columns(tracer, y, (region.x..region.x + region.width, 0), number, |x, (stream, index), sample| {
             let pixel = &mut pixels[x - region.x];
@@ -406,7 +438,7 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
             .par_chunks_mut(region.width * channels.len())
             .enumerate()
             .map_init(
-                || this.tracer(this.virtual_lights, this.guide.as_ref()),
+                || this.tracer(this.way, this.guide.as_ref()),
                 |tracer, (row, out)| this.row(tracer, region, region.y + row, channels, out),
             )
             .collect();

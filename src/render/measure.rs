@@ -55,6 +55,10 @@ pub struct Settings {
     /// Whether virtual lights stand for light between diffuse surfaces in pictures ([`virtual_lights`](super::integrator::virtual_lights));
     /// without a word, where they make less noise in the same time.
     pub virtual_lights: Option<bool>,
+    /// Ways by which a path of a picture leaves the first surface that scatters
+    /// ([`PathTracer::branching`](super::integrator::path::PathTracer::branching)), 1 where packets help; without a word, as many as make
+    /// least noise in the same time.
+    pub branches: Option<u32>,
     /// Whether paths of pictures are guided to what comes over polished surfaces ([`guide`](super::integrator::guide)); without a word, where that
     /// pays.
     pub guiding: Option<bool>,
@@ -66,7 +70,16 @@ impl Settings {
     pub fn new(seed: u64, limits: Limits, bands: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a number of bands")]
         let heroes = (1..=bands).map(|b| b as f64 / bands as f64).collect();
-        Self { seed, limits, points: Points::default(), heroes, packets: false, virtual_lights: None, guiding: None }
+        Self {
+            seed,
+            limits,
+            points: Points::default(),
+            heroes,
+            packets: false,
+            virtual_lights: None,
+            branches: None,
+            guiding: None,
+        }
     }
 
     /// The random numbers of a stream.

@@ -71,3 +71,4 @@ pub mod shape;
 pub mod spool;
 pub mod steps;
 pub mod tree;
+mod trial;

@@ -41,7 +41,7 @@ impl Noise {
 pub(super) struct Gathered {
     pub(super) count: f64,
     pub(super) mean: f64,
-    squares: f64,
+    pub(super) squares: f64,
     /// The last one.
     last: f64,
     pub(super) faults: Faults,

@@ -15,6 +15,9 @@ use crate::math::random::philox;
 /// Sobol' points are tabulated up to this index; later samples start again with another key.
 const EPOCH: u32 = 1 << 16;
 
+/// Tells the numbers of a sample's parts from those of the sample.
+const BRANCH: u64 = 0x6272_616E_6368_6573;
+
 /// Groups that are stratified.
 const STRATIFIED: u32 = 12;
 
@@ -69,6 +72,14 @@ impl Sampler {
     pub fn start(&mut self, index: u64) {
         self.index = index;
         self.group = 0;
+    }
+
+    /// The numbers of one of so many parts of this sample from here on: those of all parts of all samples are stratified together. The parts
+    /// of all samples of a stream are as many.
+    #[must_use]
+    pub fn branch(&self, part: u32, parts: u32) -> Self {
+        let index = self.index * u64::from(parts) + u64::from(part);
+        Self { key: mixed(self.key ^ BRANCH), index, ..*self }
     }
 
     /// The next number, uniform in [0, 1), by which alone the samples of a stream are stratified; in place of a group.
@@ -176,6 +187,29 @@ mod tests {
     }
 
     /// Late groups are random, single numbers stratified: 2¹⁶ of them have a mean of 1/2 within five standard errors, or far less.
+    /// 16 samples of 4 parts each: 64 points, one in every 64th of every axis, and none of those of the samples themselves.
+    #[test]
+    fn the_parts_of_all_samples_are_stratified_together() {
+        let mut whole = Sampler::new(7, 9, 0);
+        let mut filled = [[0; 64]; 4];
+        let mut own = Vec::new();
+        for index in 0..16 {
+            whole.start(index);
+            let mut part = whole.clone();
+            own.push(part.four());
+            for number in 0..4 {
+                let point = whole.branch(number, 4).four();
+                assert!(!own.contains(&point));
+                for (axis, x) in point.into_iter().enumerate() {
+                    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
+                    let place = (64.0 * x) as usize;
+                    filled[axis][place] += 1;
+                }
+            }
+        }
+        assert_eq!(filled, [[1; 64]; 4]);
+    }
+
     #[test]
     fn late_groups_are_random_and_single_numbers_stratified() {
         let (mut late, mut single) = ([0.0; 4], 0.0);

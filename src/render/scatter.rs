@@ -4,10 +4,13 @@
 //! n ∝ σ/(L + L̄/100)        σ, L: of the block of pixels and its neighbours
 //! ```
 //!
+//! σ is the scatter within pixels where they have two samples or more, so that edges and textures, which are no noise, count for none.
 //! L counts what is known of the pixels beside the samples, σ does not.
 //!
 //! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given Σ n (Lagrange); the hundredth of the picture's
 //! mean luminance keeps dark pixels from taking all.
+
+use super::noise::Gathered;
 
 /// Pixels in the rows and columns of a block.
 pub(super) const BLOCK: usize = 4;
@@ -17,25 +20,46 @@ const LEAST: f64 = 0.125;
 /// Luminances of a block.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Scattered {
+    pixels: f64,
     count: f64,
     sum: f64,
+    /// Σ of their squares, and of the squares of what they are off from their pixel's mean.
     squares: f64,
+    within: f64,
     known: f64,
 }
 
 impl Scattered {
-    /// A sample's luminance, and what of the pixel's is known beside it; one that is not finite is none.
-    pub(super) fn add(&mut self, luminance: f64, known: f64) {
-        if luminance.is_finite() {
-            self.append(1.0, Self { count: 1.0, sum: luminance, squares: luminance * luminance, known });
+    /// The samples of a pixel, and what of its luminance is known beside them.
+    pub(super) fn add(&mut self, pixel: &Gathered, known: f64) {
+        let Gathered { count, mean, squares, .. } = *pixel;
+        if count > 0.0 {
+            let all = squares + count * mean * mean;
+            self.append(
+                1.0,
+                Self { pixels: 1.0, count, sum: count * mean, squares: all, within: squares, known: count * known },
+            );
         }
     }
 
     fn append(&mut self, weight: f64, other: Self) {
+        self.pixels += weight * other.pixels;
         self.count += weight * other.count;
         self.sum += weight * other.sum;
         self.squares += weight * other.squares;
+        self.within += weight * other.within;
         self.known += weight * other.known;
+    }
+
+    /// σ of a sample: within pixels where any has two or more; else of all together, which what differs from pixel to pixel adds to.
+    fn deviation(&self) -> f64 {
+        let average = self.sum / self.count;
+        let variance = if self.count > self.pixels {
+            self.within / (self.count - self.pixels)
+        } else {
+            self.squares / self.count - average * average
+        };
+        variance.max(0.0).sqrt()
     }
 }
 
@@ -82,10 +106,8 @@ impl Scatter {
                     near.append(if (x, y) == (bx, by) { 4.0 } else { 1.0 }, self.blocks[y * columns + x]);
                 }
             }
-            let average = near.sum / near.count;
-            let deviation = (near.squares / near.count - average * average).max(0.0).sqrt();
-            let luminance = average + near.known / near.count + dark;
-            if luminance > 0.0 { deviation / luminance } else { 0.0 }
+            let luminance = (near.sum + near.known) / near.count + dark;
+            if luminance > 0.0 { near.deviation() / luminance } else { 0.0 }
         };
         (0..rows * columns).map(|b| deserved(b % columns, b / columns)).collect()
     }
@@ -95,12 +117,14 @@ impl Scatter {
         let columns = self.width.div_ceil(BLOCK);
         let blocks = self.deserved();
         let average = blocks.iter().sum::<f64>() / blocks.len() as f64;
+        // One sample does not tell its noise.
+        let least = if mean > 1 { 2.0 } else { 1.0 };
         let share = |b: f64| if average > 0.0 { LEAST + (1.0 - LEAST) * b / average } else { 1.0 };
         let of = |x: usize, y: usize| share(blocks[y / BLOCK * columns + x / BLOCK]);
         (0..self.width * self.height)
             .map(|i| {
                 let samples =
-                    (mean as f64 * of(i % self.width, i / self.width)).round().clamp(1.0, f64::from(u32::MAX));
+                    (mean as f64 * of(i % self.width, i / self.width)).round().clamp(least, f64::from(u32::MAX));
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
                 let samples = samples as u32;
                 samples
@@ -113,6 +137,12 @@ impl Scatter {
 mod tests {
     use super::*;
 
+    fn pixel(luminances: &[f64]) -> Gathered {
+        let mut pixel = Gathered::default();
+        luminances.iter().for_each(|l| pixel.add(*l));
+        pixel
+    }
+
     /// Blocks of luminance 1 ± σ: samples in proportion to σ, an eighth of the mean for those without noise, and as many in all.
     #[test]
     fn samples_go_where_the_noise_is() {
@@ -122,9 +152,8 @@ mod tests {
         for y in 0..height {
             let mut row = vec![Scattered::default(); width.div_ceil(BLOCK)];
             for x in 0..width {
-                row[x / BLOCK].add(1.0 - sigma(x), 0.0);
-                row[x / BLOCK].add(1.0 + sigma(x), 0.0);
-                row[x / BLOCK].add(f64::NAN, 0.0);
+                row[x / BLOCK].add(&pixel(&[1.0 - sigma(x), 1.0 + sigma(x)]), 0.0);
+                row[x / BLOCK].add(&Gathered::default(), 0.0);
             }
             scatter.add(y, &row);
         }
@@ -146,7 +175,7 @@ mod tests {
         let mut row = vec![Scattered::default(); 24];
         for (x, block) in row.iter_mut().enumerate() {
             for luminance in [0.5, 1.5] {
-                block.add(luminance, if x < 12 { 0.0 } else { 2.0 });
+                block.add(&pixel(&[luminance]), if x < 12 { 0.0 } else { 2.0 });
             }
         }
         scatter.add(0, &row);
@@ -161,9 +190,23 @@ mod tests {
         for luminance in [0.0, 3.0] {
             let mut scatter = Scatter::new(9, 5);
             let mut row = vec![Scattered::default(); 3];
-            row.iter_mut().for_each(|block| block.add(luminance, 0.0));
+            row.iter_mut().for_each(|block| block.add(&pixel(&[luminance]), 0.0));
             (0..5).for_each(|y| scatter.add(y, &row));
             assert!(scatter.samples(7).iter().all(|&n| n == 7));
         }
+    }
+
+    /// A checkerboard without noise takes no more samples than a wall without.
+    #[test]
+    fn what_differs_from_pixel_to_pixel_is_no_noise() {
+        let mut scatter = Scatter::new(96, 4);
+        let mut row = vec![Scattered::default(); 24];
+        for (x, block) in row.iter_mut().enumerate() {
+            let board = if x < 12 { [0.5, 1.5] } else { [1.0, 1.0] };
+            board.iter().for_each(|l| block.add(&pixel(&[l - 1e-3, l + 1e-3]), 0.0));
+        }
+        scatter.add(0, &row);
+        let samples = scatter.samples(1000);
+        assert_eq!((samples[10], samples[90]), (1000, 1000));
     }
 }

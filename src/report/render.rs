@@ -99,6 +99,7 @@ pub fn model(built: &Built) -> Value {
             "because": analysis.caustics_because,
         },
         "virtual_lights": virtual_lights,
+        "branches": if built.settings.packets { Some(1) } else { built.settings.branches },
         "guiding": guiding,
         "materials": {
             "dispersive": analysis.dispersive,

@@ -14,7 +14,7 @@ use photopic::render::sensor::camera::Camera;
 use crate::pictures::{ROOM, built, camera, figure, rendered};
 
 fn settings(built: &Built, seed: u64, virtual_lights: Option<bool>) -> Settings {
-    Settings { seed, virtual_lights, ..built.settings.clone() }
+    Settings { seed, virtual_lights, branches: Some(1), ..built.settings.clone() }
 }
 
 /// All channels of all pixels, row by row, and the noise.
@@ -105,7 +105,7 @@ camera = {{ at = [0.2, 0.1, 0.05], look_at = [0, 0.3, 0], resolution = [24, 6], 
     }
 }
 
-/// What virtual lights show is what paths find, in every band and part of the picture: textures, smooth normals, mirrors and glass between
+/// What virtual lights and paths of several branches show is what paths find, in every band and part of the picture: textures, smooth normals, mirrors and glass between
 /// diffuse surfaces, dispersion, fluorescence, skies and sun; by the scatter over seeds.
 #[test]
 fn pictures_are_those_of_the_path_tracer() {
@@ -152,20 +152,25 @@ fn pictures_are_those_of_the_path_tracer() {
             let text =
                 format!("[render]\nwavelength_step_nm = 60\n{limit}\n{ROOM}{WALL}{shapes}{}{VIEW}", lamps[*lamp]);
             let built = built(&text);
-            let parts = |virtual_lights, first: u64| -> Vec<Vec<f64>> {
+            let parts = |virtual_lights, branches, first: u64| -> Vec<Vec<f64>> {
                 (first..first + 16)
                     .map(|seed| {
                         let settings = settings(&built, seed, Some(virtual_lights));
+                        let settings = Settings { branches: Some(branches), ..settings };
                         blocks(&picture(&built, &settings, 64).0, camera(&built), 2)
                     })
                     .collect()
             };
-            let (with, without) = (parts(true, 0), parts(false, 100));
-            for part in 0..with[0].len() {
-                let of = |all: &[Vec<f64>]| figure(&all.iter().map(|p| p[part]).collect::<Vec<_>>());
-                let ((a, da), (b, db)) = (of(&with), of(&without));
-                // Of about 30 degrees of freedom: beyond 5 once in 40 000, and there are 700.
-                assert!((a - b).abs() <= 5.0 * da.hypot(db), "{name}, lamp {lamp}, {part}: {a} ± {da}, {b} ± {db}");
+            let paths = parts(false, 1, 100);
+            for (virtual_lights, branches) in [(true, 1), (true, 2), (false, 4)] {
+                let others = parts(virtual_lights, branches, 0);
+                for part in 0..paths[0].len() {
+                    let of = |all: &[Vec<f64>]| figure(&all.iter().map(|p| p[part]).collect::<Vec<_>>());
+                    let ((a, da), (b, db)) = (of(&others), of(&paths));
+                    let way = format!("{name}, lamp {lamp}, virtual lights: {virtual_lights}, branches: {branches}");
+                    // Of about 30 degrees of freedom: beyond 5 once in 40 000, and there are 2100.
+                    assert!((a - b).abs() <= 5.0 * da.hypot(db), "{way}, {part}: {a} ± {da}, {b} ± {db}");
+                }
             }
         }
     }
@@ -175,13 +180,16 @@ fn pictures_are_those_of_the_path_tracer() {
 #[test]
 fn the_error_of_the_mean_is_what_it_scatters() {
     let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{WALL}{LAMP}{VIEW}"));
-    let all: Vec<Noise> = (0..64).map(|seed| picture(&built, &settings(&built, seed, Some(true)), 32).1).collect();
-    let (_, error) = figure(&all.iter().map(|noise| noise.luminance).collect::<Vec<_>>());
-    let scatter = error * 8.0;
-    let stated = (all.iter().map(|noise| noise.variance).sum::<f64>() / 64.0).sqrt();
-    // χ² of 63 degrees of freedom: within a factor of 1.4 all but once in 10 000; samples are spread evenly, which errs to the safe side.
-    assert!(scatter < 1.4 * stated, "{scatter} {stated}");
-    assert!(stated < 5.0 * scatter, "{scatter} {stated}");
+    for branches in [1, 4] {
+        let settings = |seed| Settings { branches: Some(branches), ..settings(&built, seed, Some(true)) };
+        let all: Vec<Noise> = (0..64).map(|seed| picture(&built, &settings(seed), 32).1).collect();
+        let (_, error) = figure(&all.iter().map(|noise| noise.luminance).collect::<Vec<_>>());
+        let scatter = error * 8.0;
+        let stated = (all.iter().map(|noise| noise.variance).sum::<f64>() / 64.0).sqrt();
+        // χ² of 63 degrees of freedom: within a factor of 1.4 all but once in 10 000; samples are spread evenly, which errs to the safe side.
+        assert!(scatter < 1.4 * stated, "{scatter} {stated}");
+        assert!(stated < 5.0 * scatter, "{scatter} {stated}");
+    }
 }
 
 #[test]
@@ -213,6 +221,35 @@ fn they_are_taken_where_they_pay() {
         let with = |virtual_lights| picture(&built, &settings(&built, 3, virtual_lights), 16).0;
         assert!(with(Some(true)) != with(Some(false)));
         assert!(with(None) == with(Some(pays)), "{pays}");
+    }
+}
+
+/// What a floor and a wall under an open sky send to the camera is found by many directions from few of their places.
+#[test]
+fn branches_are_taken_where_they_pay() {
+    let sky = "[[light]]\nspectrum = \"D65\"\nenvironment = { radiance = \"1 W/m2/sr/nm\" }\n";
+    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{WALL}{sky}{VIEW}"));
+    let with = |branches| picture(&built, &Settings { branches, ..settings(&built, 3, Some(false)) }, 64).0;
+    let found = with(None);
+    let numbers: Vec<u32> = [1, 2, 4, 8, 16].into_iter().filter(|n| with(Some(*n)) == found).collect();
+    assert!(matches!(numbers[..], [2..=4]), "{numbers:?}");
+}
+
+/// A plane under a sky that is the same everywhere has the radiance ρL, of which no sample is off: every direction that the plane draws is
+/// worth the same.
+#[test]
+fn a_plane_under_a_uniform_sky_has_no_noise() {
+    let scene = "[[material]]\nname = \"gray\"\nreflectance = 0.4\n[[shape]]\nmaterial = \"gray\"\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\n[[light]]\nspectrum = [[360, 1], [830, 1]]\nenvironment = { radiance = \"2 W/m2/sr/nm\" }\n[[sensor]]\nname = \"view\"\ncamera = { at = [0, 0, 2], look_at = [0, 1, 0], resolution = [8, 8], field_of_view = \"30 deg\" }\n";
+    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{scene}"));
+    for branches in [1, 4] {
+        let settings = Settings { branches: Some(branches), ..settings(&built, 1, None) };
+        let (pixels, noise) = picture(&built, &settings, 8);
+        let bands = built.scene.bands().len();
+        for row in pixels.chunks_exact(8 * (bands + 3)) {
+            // Pixels are f32.
+            assert!(row[..8 * bands].iter().all(|l| (l / 0.8 - 1.0).abs() < 2.0 * f32::EPSILON), "{row:?}");
+        }
+        assert!(noise.relative() < 1e-12, "{noise:?}");
     }
 }
 

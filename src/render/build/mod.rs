@@ -217,6 +217,9 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     if render.roulette_from == 0 {
         return Err(builder.wrong(&(0..0), "a `roulette_from` of 0; expected the number of an edge, from 1"));
     }
+    if let Some(found) = render.branches.filter(|n| !(1..=64).contains(n)) {
+        return Err(builder.wrong(&(0..0), format!("`branches` of {found}; expected 1 to 64")));
+    }
     let limits = Limits {
         follow,
         max_edges: render.max_edges,
@@ -233,8 +236,9 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
     let full = render.model == Model::Full;
     let virtual_lights = if full { Some(false) } else { render.virtual_lights };
+    let branches = if full { Some(1) } else { render.branches };
     let guiding = if full { Some(false) } else { render.guiding };
-    let settings = Settings { packets, virtual_lights, guiding, points: render.sampler, ..settings };
+    let settings = Settings { packets, virtual_lights, branches, guiding, points: render.sampler, ..settings };
     Ok(Built {
         scene,
         instruments,

@@ -75,6 +75,10 @@ pub struct Render {
     pub virtual_lights: Option<bool>,
     /// Whether packets from the lights tell paths of pictures where glass and mirrors send light from; without it where that pays.
     pub guiding: Option<bool>,
+    /// Samples of a picture that share a ray of the camera: ways by which its path leaves the first surface that is no mirror and no polished
+    /// glass; without it as many as make least noise.
+    #[schemars(range(min = 1, max = 64))]
+    pub branches: Option<u32>,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,
@@ -111,6 +115,7 @@ impl Default for Render {
             samples: 64,
             adaptive: true,
             virtual_lights: None,
+            branches: None,
             guiding: None,
             meter_samples: 1 << 18,
             seed: 0,

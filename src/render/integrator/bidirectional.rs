@@ -43,7 +43,7 @@ use glam::DVec3;
 
 use super::frame::Frame;
 use super::guide::Guide;
-use super::limits::Limits;
+use super::limits::{Follow, Limits};
 use super::packet::{Origin, Packet, Vertex};
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
@@ -210,7 +210,7 @@ impl<'a> PacketTracer<'a> {
             scene,
             limits,
             target,
-            choice: Choice::new(scene.lights(), middle),
+            choice: Choice::new(scene.lights(), middle, limits.follow == Follow::All),
             packet: Packet::new(scene, limits, heroes, shares),
             guide: None,
             value: vec![0.0; n],

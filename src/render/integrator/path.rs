@@ -13,19 +13,25 @@
 //! Of two ways at a polished surface that the camera sees both are followed ([`super::branches`]); from diffuse surfaces paths may be guided
 //! ([`super::guide`]).
 //!
+//! A path from a camera may leave the first surface that scatters by n ways, each with 1/n of the weight ([`PathTracer::branching`]); the light
+//! sought there is weighed as one draw beside n. A light that is the same from everywhere is not sought where paths go on: directions drawn
+//! for the surface find it best.
+//!
 //! With [`Follow::Specular`] it is the ray tracing of T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23 (1980).
 //!
 //! References: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, thesis, Stanford 1997, ch. 9 and 10; J. Arvo &
 //! D. Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990.
 
+mod found;
+
 use glam::DVec3;
 
 use super::branches::{Branches, Carried};
 use super::frame::Frame;
-use super::guide::{self, Guide};
+use super::guide::{self, Guide, Guided};
 use super::limits::{Follow, Limits};
 use super::polarisation::Polarisation;
-use super::virtual_lights::{DRAWS, VirtualLights};
+use super::virtual_lights::VirtualLights;
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
 use crate::render::material::{Material, Scattered, Transport};
@@ -78,6 +84,12 @@ pub struct PathTracer<'a> {
     picture_sr: f64,
     /// Packets land on the meter that the path starts from, so that they compete from its first edge on.
     lands: bool,
+    /// Ways by which a path from the camera leaves the first surface that is no mirror and no polished glass.
+    ways: u32,
+    /// The share of a way in the sample.
+    share: f64,
+    /// What the path carried to where they part.
+    kept: Vec<f64>,
 }
 
 /// Where the path stands before its next edge.
@@ -104,13 +116,31 @@ struct Edge {
     guided: f64,
 }
 
-/// A vertex.
+/// Where a path goes on from.
 #[derive(Clone, Copy)]
-struct Place<'a> {
+struct Vertex<'a> {
     material: &'a dyn Material,
-    point: &'a SurfacePoint,
-    frame: &'a Frame,
+    point: SurfacePoint,
+    frame: Frame,
     outgoing: DVec3,
+    /// The edge that leads there, with what the next has of it.
+    edge: Edge,
+    /// Light is sought from here.
+    seek: bool,
+    /// Virtual lights are drawn for it, by this number.
+    shares: bool,
+    u: f64,
+    /// A packet is connected with the lens from here.
+    connected: bool,
+    rival: f64,
+    guided: Option<Guided<'a>>,
+}
+
+impl Vertex<'_> {
+    /// The density with which a packet that comes from `incident` is sent on the way that the path came, where one competes.
+    fn sent(&self, incident: DVec3, hero: usize) -> f64 {
+        if !self.connected && self.rival > 0.0 { self.material.pdf(incident, self.outgoing, hero) } else { 1.0 }
+    }
 }
 
 impl Edge {
@@ -146,7 +176,7 @@ impl<'a> PathTracer<'a> {
             throughput: vec![1.0; n],
             value: vec![0.0; n],
             arriving: vec![0.0; n],
-            choice: Choice::new(scene.lights(), middle),
+            choice: Choice::new(scene.lights(), middle, limits.follow == Follow::All),
             radiance: vec![0.0; n],
             split: false,
             hero: 0,
@@ -160,7 +190,17 @@ impl<'a> PathTracer<'a> {
             searches: 0,
             picture_sr: 0.0,
             lands: false,
+            ways: 1,
+            share: 1.0,
+            kept: vec![1.0; n],
         }
+    }
+
+    /// The same, whose paths from a camera leave the first surface that is no mirror and no polished glass by so many ways, 1 or more; not
+    /// beside packets, which count on one.
+    #[must_use]
+    pub fn branching(self, ways: u32) -> Self {
+        Self { ways, ..self }
     }
 
     /// The same, for pictures and readings to which packets of flux add what they find: see [`super::bidirectional`].
@@ -204,7 +244,7 @@ impl<'a> PathTracer<'a> {
     pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
         self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
-        self.follow(Edge { straight: true, ..Edge::first(ray, None, ray.origin) }, sampler);
+        self.follow(Edge { straight: true, ..Edge::first(ray, None, ray.origin) }, self.ways, sampler);
         &self.radiance
     }
 
@@ -243,7 +283,7 @@ impl<'a> PathTracer<'a> {
         let own = response.pdf(local);
         self.picture_sr = if self.packets.is_some() && !self.lands { 1.0 / own } else { 0.0 };
         let first = Edge::first(ray, response.seeks_lights().then_some(own), point.position);
-        self.follow(Edge { rival: landing(local) / own, ..first }, sampler);
+        self.follow(Edge { rival: landing(local) / own, ..first }, 1, sampler);
         &self.radiance
     }
 
@@ -253,6 +293,9 @@ impl<'a> PathTracer<'a> {
         self.polarisation.clear();
         self.seen = None;
         self.lands = false;
+        self.share = 1.0;
+        // What a sample takes beside them.
+        self.searches += 1;
         self.choose_hero(sampler);
     }
 
@@ -282,16 +325,17 @@ impl<'a> PathTracer<'a> {
         self.throughput[self.hero] = kept;
     }
 
-    fn follow(&mut self, start: Edge, sampler: &mut Sampler) {
-        self.follow_one(start, sampler);
+    /// Follows a path, which leaves the first surface that scatters by so many ways.
+    fn follow(&mut self, start: Edge, ways: u32, sampler: &mut Sampler) {
+        self.follow_one(start, ways, sampler);
         while let Some((mut carried, edge)) = self.branches.pop() {
             self.exchange(&mut carried);
             self.branches.give_back(carried);
-            self.follow_one(edge, sampler);
+            self.follow_one(edge, ways, sampler);
         }
     }
 
-    fn follow_one(&mut self, start: Edge, sampler: &mut Sampler) {
+    fn follow_one(&mut self, start: Edge, ways: u32, sampler: &mut Sampler) {
         let mut edge = start;
         loop {
             self.searches += 1;
@@ -304,11 +348,43 @@ impl<'a> PathTracer<'a> {
             if self.limits.max_edges.is_some_and(|max| edge.count >= max) {
                 return;
             }
-            match self.scatter(&edge, surface, &point, sampler) {
+            // Of a faint way at glass fewer.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "no more than there were")]
+            let ways = (f64::from(ways) * edge.chance).round().max(1.0) as u32;
+            let Some(vertex) = self.arrive(&edge, surface, point, ways, sampler) else { return };
+            if ways > 1 && vertex.seek {
+                self.part(&vertex, ways, sampler);
+                return;
+            }
+            match self.leave(&vertex, 1, sampler) {
                 Some(next) => edge = next,
                 None => return,
             }
         }
+    }
+
+    /// Follows all ways from a vertex, each from what the path carried there, with random numbers of its own that are spread evenly over all of
+    /// them.
+    fn part(&mut self, vertex: &Vertex<'a>, ways: u32, sampler: &Sampler) {
+        self.kept.copy_from_slice(&self.throughput);
+        let (hero, split, seen) = (self.hero, self.split, self.seen);
+        self.share = 1.0 / f64::from(ways);
+        for way in 0..ways {
+            let mut sampler = sampler.branch(way, ways);
+            self.throughput.copy_from_slice(&self.kept);
+            (self.hero, self.split, self.seen) = (hero, split, seen);
+            if !split {
+                self.choose_hero(&mut sampler);
+            }
+            if let Some(lights) = &mut self.virtual_lights {
+                lights.take(way as usize);
+            }
+            self.choice.prepare(self.scene.lights(), vertex.point.position);
+            if let Some(edge) = self.leave(vertex, ways, &mut sampler) {
+                self.follow_one(edge, 1, &mut sampler);
+            }
+        }
+        self.share = 1.0;
     }
 
     /// Carries what waited, which takes what was carried.
@@ -320,42 +396,15 @@ impl<'a> PathTracer<'a> {
         std::mem::swap(&mut self.seen, &mut other.seen);
     }
 
-    /// Adds what a ray meets that leaves the scene.
-    fn escape(&mut self, edge: &Edge) {
-        for (index, light) in self.scene.lights().iter().enumerate() {
-            self.value.fill(0.0);
-            light.add_radiance(edge.ray.direction, &mut self.value);
-            let rival = self.rival(edge.rival, index, edge.from, edge.ray.direction, f64::INFINITY);
-            let other = edge.pdf.map_or(0.0, |pdf| {
-                ratio(self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction), pdf)
-            });
-            self.add(power_heuristic(other, rival));
-        }
-    }
-
-    /// Adds what the surface at the end of an edge emits towards it.
-    fn emission(&mut self, edge: &Edge, surface: usize, point: &SurfacePoint) {
-        let Some(emission) = self.scene.emission(surface) else { return };
-        let away = -edge.ray.direction;
-        let profile = emission.profile_towards(away, point.normal.dot(away));
-        if profile == 0.0 {
-            return;
-        }
-        let weight = self.scene.light_of_surface(surface).map_or(1.0, |light| {
-            let (from, direction) = (edge.from, edge.ray.direction);
-            let rival = self.rival(edge.rival, light, from, direction, from.distance(point.position));
-            let other = edge.pdf.map_or(0.0, |pdf| {
-                ratio(self.choice.probability(light) * self.scene.lights()[light].pdf_towards(from, direction), pdf)
-            });
-            power_heuristic(other, rival)
-        });
-        self.value.copy_from_slice(emission.radiance());
-        self.add(weight * profile);
-    }
-
-    /// Seeks a light from a vertex and draws the next edge.
-    fn scatter(&mut self, edge: &Edge, surface: usize, point: &SurfacePoint, sampler: &mut Sampler) -> Option<Edge> {
-        let count = edge.count;
+    /// Seeks a light from a vertex, which the path may leave by so many ways; `None` where it ends.
+    fn arrive(
+        &mut self,
+        edge: &Edge,
+        surface: usize,
+        point: SurfacePoint,
+        ways: u32,
+        sampler: &mut Sampler,
+    ) -> Option<Vertex<'a>> {
         let material = self.scene.material(surface);
         let frame = Frame::of(point.shading, point.tangent);
         let outgoing = frame.local(-edge.ray.direction);
@@ -384,12 +433,12 @@ impl<'a> PathTracer<'a> {
             chance = SEEN;
         }
         let shares = !self.split && material.is_diffuse() && self.virtual_lights.is_some();
-        if shares && self.is_found(edge, point, sampler) {
+        if shares && self.is_found(edge, &point, sampler) {
             return None;
         }
         let hero = self.hero;
         // From the first vertex a packet is connected with the lens, unless it lands on a meter as on any surface.
-        let connected = count == 1 && !self.lands;
+        let connected = edge.count == 1 && !self.lands;
         let rival = match connected {
             // Packets do not come to the lens straight from a mirror or from glass.
             true if seek => self.picture_sr * edge.from.distance_squared(point.position),
@@ -397,30 +446,38 @@ impl<'a> PathTracer<'a> {
             false => edge.rival,
         };
         let guided = self.guide.filter(|_| guide::suits(material)).map(|guide| guide.at(point.position));
-        // How a packet that comes from `incident` is sent on the way that the path came.
-        let sent = |incident| if !connected && rival > 0.0 { material.pdf(incident, outgoing, hero) } else { 1.0 };
+        let onwards = Edge {
+            straight: edge.straight && !seek,
+            chance,
+            // Either way of a Dirac lobe is as probable as the other; no packet comes to the lens from it.
+            rival: if connected { 0.0 } else { rival },
+            ..*edge
+        };
+        let vertex =
+            Vertex { material, point, frame, outgoing, edge: onwards, seek, shares, u: u[3], connected, rival, guided };
         if seek {
             self.choice.prepare(self.scene.lights(), point.position);
             // Where the path ends here, no other strategy competes with the light's own.
-            let competes = self.limits.follow == Follow::All;
+            let competing = if self.limits.follow == Follow::All { f64::from(ways) } else { 0.0 };
             let function = |incident, value: &mut [f64]| {
                 let pdf = evaluate(material, incident, outgoing, hero, value);
                 let pdf = guided.map_or(pdf, |g| g.density(frame.world(incident), pdf));
-                [if competes { pdf } else { 0.0 }, rival * sent(incident)]
+                [competing * pdf, rival * vertex.sent(incident, hero)]
             };
-            self.light(point, u, function, &frame);
+            self.light(&point, u, function, &frame);
         }
-        if shares {
-            self.virtual_light(material, point, outgoing, &frame, count, u[3]);
+        (self.limits.follow != Follow::Nothing).then_some(vertex)
+    }
+
+    /// Draws virtual lights for a vertex and the next edge, one of so many that leave it.
+    fn leave(&mut self, vertex: &Vertex<'a>, ways: u32, sampler: &mut Sampler) -> Option<Edge> {
+        if vertex.shares {
+            self.virtual_light(vertex);
         }
-        if self.limits.follow == Follow::Nothing {
-            return None;
-        }
+        let Vertex { material, frame, outgoing, guided, .. } = *vertex;
+        let hero = self.hero;
         let [u0, u1, u2, u3] = sampler.four();
-        let at = Place { material, point, frame: &frame, outgoing };
-        let mut here = Edge { straight: edge.straight && !seek, chance, ..*edge };
-        // Either way of a Dirac lobe is as probable as the other; no packet comes to the lens from it.
-        here.rival = if connected { 0.0 } else { rival };
+        let mut here = vertex.edge;
         let drawn = match guided.and_then(|g| g.draw(sampler.four())) {
             Some(direction) => {
                 let incident = frame.local(direction);
@@ -432,17 +489,17 @@ impl<'a> PathTracer<'a> {
                 self.value.iter_mut().for_each(|v| *v /= pdf);
                 Scattered { direction: incident, pdf, delta: false, split: false, eta: 1.0 }
             }
-            None => self.draw(&at, [u0, u1, u2])?,
+            None => self.draw(vertex, [u0, u1, u2])?,
         };
         if self.limits.follow == Follow::Specular && !drawn.delta {
             return None;
         }
         if drawn.delta {
-            if here.straight && self.branch(&here, &at, &drawn, [u1, u2, u3]) {
+            if here.straight && self.branch(&here, vertex, &drawn, [u1, u2, u3]) {
                 here.chance *= drawn.pdf;
                 self.value.iter_mut().for_each(|v| *v *= drawn.pdf);
             }
-            return self.onwards(&here, &at, &drawn, u3);
+            return self.onwards(&here, vertex, &drawn, u3);
         }
         // By all ways of drawing the direction; the material's own may not know it.
         let pdf = guided.map_or(drawn.pdf, |g| g.density(frame.world(drawn.direction), drawn.pdf));
@@ -454,14 +511,14 @@ impl<'a> PathTracer<'a> {
         } else {
             here.guided = 1.0;
         }
-        here.rival = rival * sent(drawn.direction) / pdf;
-        let next = self.onwards(&here, &at, &drawn, u3)?;
-        let shared = if shares { drawn.direction.z.abs() } else { 0.0 };
-        Some(Edge { pdf: seek.then_some(pdf), shared, ..next })
+        here.rival = vertex.rival * vertex.sent(drawn.direction, hero) / pdf;
+        let next = self.onwards(&here, vertex, &drawn, u3)?;
+        let shared = if vertex.shares { drawn.direction.z.abs() } else { 0.0 };
+        Some(Edge { pdf: vertex.seek.then(|| f64::from(ways) * pdf), shared, ..next })
     }
 
     /// Draws a direction at a vertex.
-    fn draw(&mut self, at: &Place<'_>, u: [f64; 3]) -> Option<Scattered> {
+    fn draw(&mut self, at: &Vertex<'_>, u: [f64; 3]) -> Option<Scattered> {
         let (material, hero) = (at.material, self.hero);
         // Beside packets each way must be as probable for them as for the path, and they may still carry all bands.
         if self.split && self.packets.is_none() {
@@ -473,7 +530,7 @@ impl<'a> PathTracer<'a> {
 
     /// Sets the other of two Dirac lobes aside, to be followed later; not where they are not two, or one of them is too faint. What was drawn
     /// of the one stays.
-    fn branch(&mut self, edge: &Edge, at: &Place<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
+    fn branch(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
         if edge.chance * drawn.pdf.min(1.0 - drawn.pdf) < FAINTEST {
             return false;
         }
@@ -504,8 +561,8 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Goes on in a direction that was drawn, with what [`Material::sample`] wrote; `edge` is the one that leads there, with what the next has of it.
-    fn onwards(&mut self, edge: &Edge, at: &Place<'_>, drawn: &Scattered, u: f64) -> Option<Edge> {
-        let Place { material, point, frame, outgoing } = *at;
+    fn onwards(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, u: f64) -> Option<Edge> {
+        let Vertex { material, point, frame, outgoing, .. } = *at;
         let direction = frame.world(drawn.direction);
         // A shading normal can send light through the surface: no light goes there.
         if direction.dot(point.normal) * drawn.direction.z <= 0.0 {
@@ -544,106 +601,6 @@ impl<'a> PathTracer<'a> {
         let count = edge.count + 1;
         Some(Edge { ray, pdf: None, from: point.position, shared: 0.0, index_squared, count, ..*edge })
     }
-
-    /// The density with which packets find a path whose last edge leads from `from` to a light, over that of the path's own way, given
-    /// that ratio for all but the light's end.
-    fn rival(&self, before: f64, light: usize, from: DVec3, direction: DVec3, distance: f64) -> f64 {
-        match self.packets {
-            Some(shares) if before > 0.0 => {
-                let density = self.scene.lights()[light].emission_density(from, direction, distance);
-                before * shares.probability(light) * density
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// Adds the light that one light, drawn at random, sends to a vertex straight away. `function` writes f |cosθ| per band for a local
-    /// direction and gives the density with which the vertex's own sampling draws it, and [`Edge::rival`] of the path with that edge,
-    /// without the density of the edge.
-    fn light(
-        &mut self,
-        point: &SurfacePoint,
-        [u0, u1, u2, _]: [f64; 4],
-        function: impl Fn(DVec3, &mut [f64]) -> [f64; 2],
-        frame: &Frame,
-    ) {
-        let Some((index, probability, stretched)) = self.choice.draw(u0) else { return };
-        let light = &self.scene.lights()[index];
-        let Some(towards) = light.sample_towards(point.position, [stretched, u1, u2], &mut self.arriving) else {
-            return;
-        };
-        let local = frame.local(towards.direction);
-        if towards.direction.dot(point.normal) * local.z <= 0.0 {
-            return;
-        }
-        let [own, before] = function(local, &mut self.value);
-        if self.value.iter().all(|&v| v == 0.0) {
-            return;
-        }
-        let ray = Ray { origin: point.origin_towards(towards.direction), direction: towards.direction };
-        let ignored = self.scene.surface_of_light(index);
-        let casts_shadows = self.limits.shadows && light.casts_shadows();
-        self.searches += u64::from(casts_shadows);
-        if casts_shadows && self.scene.surfaces().is_occluded(&ray, towards.distance, ignored) {
-            return;
-        }
-        let pdf = probability * towards.pdf;
-        let own = if towards.delta { 0.0 } else { own };
-        let rival = self.rival(before, index, point.position, towards.direction, towards.distance);
-        let weight = power_heuristic(own / pdf, rival / pdf) / pdf;
-        multiply(&mut self.value, &self.arriving);
-        self.add(weight);
-    }
-
-    /// Whether what the path would find from here on is left to virtual lights that were drawn where its last edge starts.
-    fn is_found(&self, edge: &Edge, point: &SurfacePoint, sampler: &mut Sampler) -> bool {
-        let Some(lights) = self.virtual_lights.as_ref().filter(|_| edge.shared > 0.0) else { return false };
-        let cosines = edge.shared * edge.ray.direction.dot(point.normal).abs();
-        let share = lights.share(cosines / edge.from.distance_squared(point.position));
-        share == 1.0 || share > 0.0 && sampler.one() < share
-    }
-
-    /// Adds the light of some virtual lights, drawn at random by one number.
-    fn virtual_light(
-        &mut self,
-        material: &dyn Material,
-        point: &SurfacePoint,
-        outgoing: DVec3,
-        frame: &Frame,
-        count: u32,
-        u: f64,
-    ) {
-        let from = point.position;
-        let normal = if outgoing.z < 0.0 { -point.shading } else { point.shading };
-        let edges = self.limits.max_edges.map_or(u32::MAX, |max| max.saturating_sub(count + 1));
-        if !self.virtual_lights.as_mut().is_some_and(|lights| lights.weigh(from, normal, edges)) {
-            return;
-        }
-        for draw in 0..DRAWS {
-            let Some(lights) = &self.virtual_lights else { return };
-            let Some(drawn) = lights.draw(from, normal, (draw, u)) else { continue };
-            let local = frame.local(drawn.direction);
-            if drawn.direction.dot(point.normal) * local.z <= 0.0 {
-                continue;
-            }
-            self.searches += 1;
-            if !lights.arriving(point, &drawn, &mut self.arriving) {
-                continue;
-            }
-            material.evaluate(local, outgoing, Transport::Radiance, &mut self.value);
-            multiply(&mut self.value, &self.arriving);
-            self.add(drawn.weight * local.z.abs());
-        }
-    }
-
-    /// Adds throughput · value · weight: band by band, or of all bands of the light to the one that the instrument sees.
-    fn add(&mut self, weight: f64) {
-        let products = self.throughput.iter().zip(&self.value).map(|(t, v)| t * v * weight);
-        match self.seen {
-            Some(band) => self.radiance[band] += products.sum::<f64>(),
-            None => self.radiance.iter_mut().zip(products).for_each(|(r, p)| *r += p),
-        }
-    }
 }
 
 /// Writes f_s |cosθ_i| and gives the density of the material's own sampling.
@@ -655,14 +612,4 @@ fn evaluate(material: &dyn Material, incident: DVec3, outgoing: DVec3, hero: usi
 
 fn multiply(values: &mut [f64], by: &[f64]) {
     values.iter_mut().zip(by).for_each(|(v, b)| *v *= b);
-}
-
-/// How much larger a density is than a path's own; infinite where that has none.
-fn ratio(other: f64, own: f64) -> f64 {
-    if own > 0.0 { other / own } else { f64::INFINITY }
-}
-
-/// p² / (p² + o² + r²) of the densities o/p and r/p of two other ways; 0 where p is, and they are infinite.
-fn power_heuristic(other: f64, rival: f64) -> f64 {
-    1.0 / (1.0 + other * other + rival * rival)
 }

@@ -2,7 +2,7 @@
 //!
 //! A path that leaves a diffuse surface into any direction seldom finds what lights it where that is one bright patch across a dark room.
 //! Packets from the lights know where it is bright. A few are sent for every set of samples; every diffuse place that one comes to is a
-//! virtual light of that set, and a sample draws [`DRAWS`] of them, in proportion to what they would bring if nothing were in between:
+//! virtual light of that set, and a path draws [`DRAWS`] of them, in proportion to what they would bring if nothing were in between:
 //!
 //! ```text
 //! L = Σ f_x f_y Φ_y min(G, b) V / (p_y N)        G = |cosθ_x| |cosθ_y| / d²,   p_y ∝ S_y min(G, b)
@@ -15,13 +15,14 @@
 //! Only edges between two diffuse surfaces ([`Material::is_diffuse`](crate::render::material::Material::is_diffuse)) of which a path
 //! carries all bands are shared out that way. Light that comes straight from a lamp is left to the path.
 //!
-//! Every sample of a pixel has a set of its own, which it shares with the other pixels of a row: the scatter of a pixel's samples tells its
-//! error, but the errors of the pixels of a row are not independent.
+//! Every way by which a sample of a pixel goes on has a set of its own, which it shares with the other pixels of a row: the scatter of a pixel's
+//! samples tells its error, but the errors of the pixels of a row are not independent.
 //!
 //! References: A. Keller, *Instant Radiosity*, SIGGRAPH 1997; T. Kollig & A. Keller, *Illumination in the Presence of Weak Singularities*,
 //! Monte Carlo and Quasi-Monte Carlo Methods 2004 (the bound, and what is beyond it).
 
 use glam::DVec3;
+use pulp::Arch;
 
 use super::limits::{Follow, Limits};
 use super::packet::{Packet, Vertex};
@@ -32,13 +33,15 @@ use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 
 /// Virtual lights that are drawn for a vertex.
-pub const DRAWS: usize = 2;
+pub const DRAWS: u32 = 2;
 /// Pixels for which one packet is sent.
 const PIXELS: f64 = 4.0;
 /// Most packets of a set: every sample weighs all that they bring.
 const MOST: f64 = 64.0;
 /// So many of them are weighed in the time of a search along a ray, about.
-const WEIGHED: f64 = 100.0;
+const WEIGHED: f64 = 400.0;
+/// Weights that are summed one by one; their sums are then summed again.
+const BLOCK: usize = 16;
 /// b N⁻¹ in terms of the area of what is lit: so near an edge is as likely to be found by a path as by one of the packets, about.
 const NEARNESS: f64 = 2.0;
 
@@ -68,7 +71,7 @@ impl Source {
     }
 }
 
-/// The virtual lights of a set of samples, and what makes them.
+/// The virtual lights of some sets, one of which is in use, and what makes them.
 #[derive(Debug)]
 pub struct VirtualLights<'a> {
     scene: &'a Scene,
@@ -77,6 +80,19 @@ pub struct VirtualLights<'a> {
     /// The longest path of a packet, edges.
     most_edges: Option<u32>,
     packet: Packet<'a>,
+    sets: Vec<Set<'a>>,
+    used: usize,
+    value: Vec<f64>,
+    /// Of the set in use, for a point: their weights, and the running sums of [`BLOCK`]s of them.
+    weights: Vec<f64>,
+    sums: Vec<f64>,
+    /// Work done for them, in searches along a ray.
+    effort: f64,
+}
+
+/// Virtual lights.
+#[derive(Debug, Default)]
+struct Set<'a> {
     /// The greatest G that they are answerable for, 1/m².
     bound: f64,
     /// x, y, z of their places, then of the normals on the sides that are lit.
@@ -88,13 +104,9 @@ pub struct VirtualLights<'a> {
     vertices: Vec<Vertex<'a>>,
     /// The flux that comes to each, per band, over the number of packets.
     fluxes: Vec<f64>,
-    value: Vec<f64>,
-    sums: Vec<f64>,
-    /// Work done for them, in searches along a ray.
-    effort: f64,
 }
 
-/// The sets of one row of pixels, one for each number of a sample.
+/// The sets of one row of pixels, one for each number of a sample and each way by which it goes on.
 #[derive(Debug)]
 pub struct Sets {
     sampler: Sampler,
@@ -109,13 +121,15 @@ impl Sets {
         Self { sampler, packets: 0 }
     }
 
-    /// Makes the next set, for so many pixels of a row of `columns`: a packet for four of them where all have a sample of that number, more for
+    /// Makes the sets of the next number, for so many pixels of a row of `columns`: a packet for four of them where all have a sample of that number, more for
     /// each of the few that have many samples, which are the noisy ones; at most 64.
     pub fn next(&mut self, lights: &mut VirtualLights<'_>, pixels: usize, columns: usize) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
         let packets = ((pixels * columns) as f64).sqrt().div_euclid(PIXELS).clamp(1.0, MOST) as u64;
-        lights.renew(packets, self.packets, &mut self.sampler);
-        self.packets += packets;
+        for set in 0..lights.sets.len() {
+            lights.renew(set, packets, self.packets, &mut self.sampler);
+            self.packets += packets;
+        }
     }
 }
 
@@ -125,27 +139,24 @@ pub struct Drawn {
     index: usize,
     /// Unit vector from the point.
     pub direction: DVec3,
-    /// |cosθ_y|/d² · min(1, b/G) over the expected number of its draws.
+    /// |cosθ_y|/d² · min(1, b/G) over the probability of its draw.
     pub weight: f64,
 }
 
 impl<'a> VirtualLights<'a> {
-    /// None yet; `heroes` as for [`super::path::PathTracer::new`].
+    /// So many sets of none yet; `heroes` as for [`super::path::PathTracer::new`].
     #[must_use]
-    pub fn new(scene: &'a Scene, limits: &Limits, heroes: &'a [f64], source: &'a Source) -> Self {
+    pub fn new(scene: &'a Scene, limits: &Limits, heroes: &'a [f64], source: &'a Source, sets: u32) -> Self {
         Self {
             scene,
             source,
             heroes,
             most_edges: limits.max_edges.map(|max| max.saturating_sub(2)),
             packet: Packet::new(scene, *limits, heroes, &source.shares),
-            bound: 0.0,
-            coordinates: Default::default(),
-            strengths: Vec::new(),
-            edges: Vec::new(),
-            vertices: Vec::new(),
-            fluxes: Vec::new(),
+            sets: (0..sets).map(|_| Set::default()).collect(),
+            used: 0,
             value: vec![0.0; scene.bands().len()],
+            weights: Vec::new(),
             sums: Vec::new(),
             effort: 0.0,
         }
@@ -157,22 +168,24 @@ impl<'a> VirtualLights<'a> {
         self.effort
     }
 
+    /// Takes a set, by its number, into use.
+    pub fn take(&mut self, set: usize) {
+        self.used = set;
+    }
+
     /// min(1, b/G): the share that virtual lights have in an edge between two diffuse surfaces.
     #[must_use]
     pub fn share(&self, g: f64) -> f64 {
-        if g > self.bound { self.bound / g } else { 1.0 }
+        let bound = self.sets[self.used].bound;
+        if g > bound { bound / g } else { 1.0 }
     }
 
-    /// Puts others in their place, those of so many packets, the first of which is sample `first` of the sampler.
-    fn renew(&mut self, packets: u64, first: u64, sampler: &mut Sampler) {
-        self.coordinates.iter_mut().for_each(Vec::clear);
-        self.strengths.clear();
-        self.edges.clear();
-        self.vertices.clear();
-        self.fluxes.clear();
+    /// Puts others in the place of those of a set, of so many packets, the first of which is sample `first` of the sampler.
+    fn renew(&mut self, set: usize, packets: u64, first: u64, sampler: &mut Sampler) {
         #[expect(clippy::cast_precision_loss, reason = "a number of packets")]
         let number = packets as f64;
-        self.bound = NEARNESS * number / self.source.area;
+        self.used = set;
+        self.sets[set].clear(NEARNESS * number / self.source.area);
         for index in first..first + packets {
             sampler.start(index);
             let Some((mut ray, _)) = self.packet.emit(sampler) else { continue };
@@ -207,68 +220,72 @@ impl<'a> VirtualLights<'a> {
         let (place, normal) = (vertex.point.position, vertex.point.normal);
         let normal = if vertex.back.dot(normal) < 0.0 { -normal } else { normal };
         let own = [place.x, place.y, place.z, normal.x, normal.y, normal.z];
-        self.coordinates.iter_mut().zip(own).for_each(|(all, x)| all.push(x));
-        self.strengths.push(strength);
-        self.edges.push(edges);
-        self.vertices.push(vertex);
-        self.fluxes.extend(self.packet.flux().iter().map(|flux| flux / packets));
+        let set = &mut self.sets[self.used];
+        set.coordinates.iter_mut().zip(own).for_each(|(all, x)| all.push(x));
+        set.strengths.push(strength);
+        set.edges.push(edges);
+        set.vertices.push(vertex);
+        set.fluxes.extend(self.packet.flux().iter().map(|flux| flux / packets));
     }
 
-    /// Weighs them for a point, `normal` on the side that is seen: those at the end of paths of no more than `edges` edges. Whether there
-    /// is one.
+    /// Weighs those of the set in use for a point, `normal` on the side that is seen: those at the end of paths of no more than `edges`
+    /// edges. Whether there is one.
     pub fn weigh(&mut self, from: DVec3, normal: DVec3, edges: u32) -> bool {
-        let bound = self.bound;
-        let [x, y, z, nx, ny, nz] = &self.coordinates;
-        let n = self.strengths.len();
-        self.effort += n as f64 / WEIGHED;
-        let (x, y, z, nx, ny, nz) = (&x[..n], &y[..n], &z[..n], &nx[..n], &ny[..n], &nz[..n]);
-        self.sums.clear();
-        self.sums.extend((0..n).map(|i| {
-            let (dx, dy, dz) = (x[i] - from.x, y[i] - from.y, z[i] - from.z);
-            let squared = dx * dx + dy * dy + dz * dz;
-            let here = (dx * normal.x + dy * normal.y + dz * normal.z).max(0.0);
-            let there = (-dx * nx[i] - dy * ny[i] - dz * nz[i]).max(0.0);
-            // At the point itself: 0/0, which min makes the bound; it is drawn and brings nothing.
-            self.strengths[i] * (here * there / (squared * squared)).min(bound)
-        }));
+        let set = &self.sets[self.used];
+        self.effort += set.strengths.len() as f64 / WEIGHED;
+        self.weights.clear();
+        self.weights.resize(set.strengths.len(), 0.0);
+        let weights = &mut self.weights;
+        // The same operations in the same order with any instruction set.
+        Arch::new().dispatch(|| set.weigh(from, normal, weights));
         if self.most_edges.is_some_and(|most| edges < most) {
-            self.sums
-                .iter_mut()
-                .zip(&self.edges)
-                .filter(|(_, own)| **own > edges)
-                .for_each(|(weight, _)| *weight = 0.0);
+            let far = weights.iter_mut().zip(&set.edges).filter(|(_, own)| **own > edges);
+            far.for_each(|(weight, _)| *weight = 0.0);
         }
         let mut sum = 0.0;
-        self.sums.iter_mut().for_each(|weight| {
-            sum += *weight;
-            *weight = sum;
-        });
+        self.sums.clear();
+        self.sums.extend(weights.chunks(BLOCK).map(|block| {
+            sum += block.iter().sum::<f64>();
+            sum
+        }));
         sum > 0.0 && sum < f64::INFINITY
     }
 
-    /// One of those that were weighed for a point and a normal: the draw number `draw` of [`DRAWS`], all by one uniform number.
+    /// One of those that were weighed for a point and a normal, by a uniform number.
     #[must_use]
-    pub fn draw(&self, from: DVec3, normal: DVec3, (draw, u): (usize, f64)) -> Option<Drawn> {
-        let draws = DRAWS as f64;
-        let u = (draw as f64 + u) / draws;
+    pub fn draw(&self, from: DVec3, normal: DVec3, u: f64) -> Option<Drawn> {
         let total = *self.sums.last()?;
-        let index =
+        // Blocks of no weight are never found: their end is not above their start. At u = 1 the last of some weight is.
+        let block =
             self.sums.partition_point(|end| *end <= u * total).min(self.sums.partition_point(|end| *end < total));
-        let below = if index == 0 { 0.0 } else { self.sums[index - 1] };
-        let probability = (self.sums[index] - below) / total;
-        let way = self.vertices[index].point.position - from;
+        let below = if block == 0 { 0.0 } else { self.sums[block - 1] };
+        let first = block * BLOCK;
+        let weights = &self.weights[first..self.weights.len().min(first + BLOCK)];
+        let (mut end, mut place) = (below, 0);
+        for weight in weights {
+            end += weight;
+            place += usize::from(end <= u * total);
+        }
+        if place == weights.len() {
+            // Rounding left something over: it is the last one of some weight.
+            place = weights.iter().rposition(|weight| *weight > 0.0)?;
+        }
+        let (index, chosen) = (first + place, weights[place]);
+        let set = &self.sets[self.used];
+        let way = set.vertices[index].point.position - from;
         let distance = way.length();
         let direction = way / distance;
-        let own = DVec3::new(self.coordinates[3][index], self.coordinates[4][index], self.coordinates[5][index]);
-        let per_area = -direction.dot(own) / (distance * distance);
-        let weight = per_area * self.share(direction.dot(normal) * per_area) / (probability * draws);
+        let [_, _, _, x, y, z] = &set.coordinates;
+        let per_area = -direction.dot(DVec3::new(x[index], y[index], z[index])) / (distance * distance);
+        let weight = per_area * self.share(direction.dot(normal) * per_area) * total / chosen;
         // Nothing comes from a place at the point itself.
         (weight > 0.0 && weight.is_finite()).then_some(Drawn { index, direction, weight })
     }
 
     /// Writes f_y Φ_y, W/(m² sr nm) times m²; `false` where it is not seen from the point.
     pub fn arriving(&self, point: &SurfacePoint, drawn: &Drawn, value: &mut [f64]) -> bool {
-        let Vertex { point: place, frame, material, arriving, .. } = &self.vertices[drawn.index];
+        let set = &self.sets[self.used];
+        let Vertex { point: place, frame, material, arriving, .. } = &set.vertices[drawn.index];
         let back = -drawn.direction;
         let outgoing = frame.local(back);
         // A shading normal can send light through the surface: no light goes there.
@@ -285,9 +302,37 @@ impl<'a> VirtualLights<'a> {
             return false;
         }
         material.evaluate(*arriving, outgoing, Transport::Radiance, value);
-        let fluxes = &self.fluxes[drawn.index * value.len()..];
+        let fluxes = &set.fluxes[drawn.index * value.len()..];
         value.iter_mut().zip(fluxes).for_each(|(v, f)| *v *= f);
         true
+    }
+}
+
+impl Set<'_> {
+    /// Forgets all; those to come are answerable for no G above `bound`, 1/m².
+    fn clear(&mut self, bound: f64) {
+        self.bound = bound;
+        self.coordinates.iter_mut().for_each(Vec::clear);
+        self.strengths.clear();
+        self.edges.clear();
+        self.vertices.clear();
+        self.fluxes.clear();
+    }
+
+    /// S min(G, b) of each, for a point.
+    #[inline(always)]
+    fn weigh(&self, from: DVec3, normal: DVec3, weights: &mut [f64]) {
+        let n = weights.len();
+        let [x, y, z, nx, ny, nz] = self.coordinates.each_ref().map(|all| &all[..n]);
+        let (strengths, bound) = (&self.strengths[..n], self.bound);
+        for (i, weight) in weights.iter_mut().enumerate() {
+            let (dx, dy, dz) = (x[i] - from.x, y[i] - from.y, z[i] - from.z);
+            let squared = dx * dx + dy * dy + dz * dz;
+            let here = (dx * normal.x + dy * normal.y + dz * normal.z).max(0.0);
+            let there = (-dx * nx[i] - dy * ny[i] - dz * nz[i]).max(0.0);
+            // At the point itself: 0/0, which min makes the bound; it is drawn and brings nothing.
+            *weight = strengths[i] * (here * there / (squared * squared)).min(bound);
+        }
     }
 }
 

@@ -26,20 +26,25 @@ pub struct Choice {
     sums: Vec<f64>,
     /// One table for all points.
     fixed: bool,
+    /// Lights that shine alike from everywhere are not chosen.
+    found: bool,
 }
 
 impl Choice {
-    /// Among some lights, weighed for a place that stands for the scene.
+    /// Among some lights, weighed for a place that stands for the scene. With `found`, lights that are the same from everywhere are left to
+    /// directions that are drawn for the surface or the instrument, which suit them best.
     #[must_use]
-    pub fn new(lights: &[Arc<dyn Light>], scene_centre: DVec3) -> Self {
-        let mut choice = Self { sums: Vec::with_capacity(lights.len()), fixed: false };
+    pub fn new(lights: &[Arc<dyn Light>], scene_centre: DVec3, found: bool) -> Self {
+        let mut choice = Self { sums: Vec::with_capacity(lights.len()), fixed: false, found };
         choice.prepare(lights, scene_centre);
         choice.fixed = lights.len() > FEW;
         if let (true, Some(total)) = (choice.fixed, choice.sums.last().copied()) {
-            let even = 1.0 / lights.len() as f64;
+            let sought = lights.iter().filter(|light| !(found && light.is_uniform())).count();
             let share = |sum: f64| if total > 0.0 { sum / total } else { 0.0 };
-            for (i, sum) in choice.sums.iter_mut().enumerate() {
-                *sum = EVEN * even * (i + 1) as f64 + (1.0 - EVEN) * share(*sum);
+            let mut so_far = 0;
+            for (light, sum) in lights.iter().zip(&mut choice.sums) {
+                so_far += usize::from(!(found && light.is_uniform()));
+                *sum = EVEN * so_far as f64 / sought.max(1) as f64 + (1.0 - EVEN) * share(*sum);
             }
         }
         choice
@@ -50,10 +55,12 @@ impl Choice {
         if self.fixed {
             return;
         }
-        let mut sum = 0.0;
+        let (mut sum, found) = (0.0, self.found);
         self.sums.clear();
         self.sums.extend(lights.iter().map(|light| {
-            sum += light.importance(from).clamp(0.0, MOST);
+            if !(found && light.is_uniform()) {
+                sum += light.importance(from).clamp(0.0, MOST);
+            }
             sum
         }));
     }
@@ -91,6 +98,8 @@ impl Choice {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bounding::BoundingSphere;
+    use super::super::environment::Environment;
     use super::super::point::Point;
     use super::super::spot::{Profile, Spot};
     use super::*;
@@ -104,7 +113,7 @@ mod tests {
     fn lights_are_chosen_as_often_as_said() {
         for count in [1, 2, 64, 65, 200] {
             let lights = points(count);
-            let mut choice = Choice::new(&lights, DVec3::ZERO);
+            let mut choice = Choice::new(&lights, DVec3::ZERO, false);
             choice.prepare(&lights, DVec3::new(3.0, 1.0, 0.0));
             let n = 20_000;
             let mut counts = vec![0.0; lights.len()];
@@ -129,7 +138,7 @@ mod tests {
         let far = Point::new(DVec3::new(0.0, 0.0, 2.0), &[4.0]).expect("a light");
         let away = Spot::new(DVec3::Y, DVec3::Y, Profile::Cosine, &[1e9]).expect("a light");
         let lights: [Arc<dyn Light>; 3] = [Arc::new(near), Arc::new(far), Arc::new(away)];
-        let mut choice = Choice::new(&lights, DVec3::ZERO);
+        let mut choice = Choice::new(&lights, DVec3::ZERO, false);
         assert_eq!([0, 1, 2].map(|i| choice.probability(i)), [0.5, 0.5, 0.0]);
         assert_eq!(choice.draw(0.75), Some((1, 0.5, 0.5)));
         assert_eq!(choice.draw(1.0).map(|c| c.0), Some(1));
@@ -138,17 +147,31 @@ mod tests {
         assert_eq!(choice.draw(0.5).map(|c| c.0), Some(0));
         assert!(choice.probability(0) <= 1.0);
         // Where nothing shines nothing is chosen, and so with no lights.
-        let dark = Choice::new(&lights[2..], DVec3::ZERO);
+        let dark = Choice::new(&lights[2..], DVec3::ZERO, false);
         assert_eq!((dark.draw(0.5), dark.probability(0)), (None, 0.0));
-        assert_eq!(Choice::new(&[], DVec3::ZERO).draw(0.5), None);
+        assert_eq!(Choice::new(&[], DVec3::ZERO, false).draw(0.5), None);
     }
 
     #[test]
     fn no_light_of_many_is_lost() {
         let mut lights = points(79);
         lights.push(Arc::new(Point::new(DVec3::splat(1e8), &[1e-9]).expect("a light")));
-        let choice = Choice::new(&lights, DVec3::ZERO);
+        let choice = Choice::new(&lights, DVec3::ZERO, false);
         let least = (0..80).map(|i| choice.probability(i)).fold(f64::INFINITY, f64::min);
         assert!((least - 0.01 / 80.0).abs() < 1e-9, "{least}");
+    }
+
+    #[test]
+    fn lights_that_are_the_same_from_everywhere_are_left_out_where_they_are_found() {
+        for count in [2, 79] {
+            let mut lights = points(count);
+            let sphere = BoundingSphere::new(DVec3::ZERO, 1.0).expect("a sphere");
+            lights.insert(1, Arc::new(Environment::constant(&[1e6], sphere).expect("a sky")));
+            let sum = |choice: &Choice| (0..lights.len()).map(|i| choice.probability(i)).sum::<f64>();
+            let [found, sought] = [true, false].map(|found| Choice::new(&lights, DVec3::Y, found));
+            assert_eq!(found.probability(1), 0.0);
+            assert!(sought.probability(1) > 0.9);
+            assert!((sum(&found) - 1.0).abs() < 1e-12 && (sum(&sought) - 1.0).abs() < 1e-12);
+        }
     }
 }

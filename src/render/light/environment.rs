@@ -269,6 +269,10 @@ impl Light for Environment {
         super::write(flux, &self.integral, self.scene.cross_section());
     }
 
+    fn is_uniform(&self) -> bool {
+        self.picture.projection == Projection::Equirectangular && self.picture.width * self.picture.height == 1
+    }
+
     fn importance(&self, _: DVec3) -> f64 {
         self.bound
     }

@@ -88,6 +88,11 @@ pub trait Light: std::fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether the same radiance comes from it from all directions, to every point.
+    fn is_uniform(&self) -> bool {
+        false
+    }
+
     /// Whether anything may stand between it and what it lights; a production light may shine through.
     fn casts_shadows(&self) -> bool {
         true
