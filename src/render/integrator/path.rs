@@ -23,10 +23,11 @@
 //! D. Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990.
 
 mod found;
+mod onwards;
 
 use glam::DVec3;
 
-use super::branches::{Branches, Carried};
+use super::branches::Branches;
 use super::frame::Frame;
 use super::guide::{self, Guide, Guided};
 use super::limits::{Follow, Limits};
@@ -34,18 +35,14 @@ use super::polarisation::Polarisation;
 use super::virtual_lights::VirtualLights;
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
-use crate::render::material::{Material, Scattered, Transport};
+use crate::render::material::{Material, Transport};
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 use crate::render::sensor::response::Response;
 
-/// Of two ways at a polished surface both are followed if the fainter of them has no less than this share of the path.
-const FAINTEST: f64 = 0.002;
 /// Fainter ways than this are mostly not followed beyond the first surface that is not polished.
 const SEEN: f64 = 0.05;
-/// The last number below 1.
-const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// The path tracer of one thread: it owns what a path needs, so that no sample allocates.
 #[derive(Debug)]
@@ -387,15 +384,6 @@ impl<'a> PathTracer<'a> {
         self.share = 1.0;
     }
 
-    /// Carries what waited, which takes what was carried.
-    fn exchange(&mut self, other: &mut Carried) {
-        std::mem::swap(&mut self.throughput, &mut other.throughput);
-        std::mem::swap(&mut self.polarisation, &mut other.polarisation);
-        std::mem::swap(&mut self.split, &mut other.split);
-        std::mem::swap(&mut self.hero, &mut other.hero);
-        std::mem::swap(&mut self.seen, &mut other.seen);
-    }
-
     /// Seeks a light from a vertex, which the path may leave by so many ways; `None` where it ends.
     fn arrive(
         &mut self,
@@ -467,139 +455,6 @@ impl<'a> PathTracer<'a> {
             self.light(&point, u, function, &frame);
         }
         (self.limits.follow != Follow::Nothing).then_some(vertex)
-    }
-
-    /// Draws virtual lights for a vertex and the next edge, one of so many that leave it.
-    fn leave(&mut self, vertex: &Vertex<'a>, ways: u32, sampler: &mut Sampler) -> Option<Edge> {
-        if vertex.shares {
-            self.virtual_light(vertex);
-        }
-        let Vertex { material, frame, outgoing, guided, .. } = *vertex;
-        let hero = self.hero;
-        let [u0, u1, u2, u3] = sampler.four();
-        let mut here = vertex.edge;
-        let drawn = match guided.and_then(|g| g.draw(sampler.four())) {
-            Some(direction) => {
-                let incident = frame.local(direction);
-                let pdf = evaluate(material, incident, outgoing, hero, &mut self.value);
-                // On the other side of the surface.
-                if pdf == 0.0 {
-                    return None;
-                }
-                self.value.iter_mut().for_each(|v| *v /= pdf);
-                Scattered { direction: incident, pdf, delta: false, split: false, eta: 1.0 }
-            }
-            None => self.draw(vertex, [u0, u1, u2])?,
-        };
-        if self.limits.follow == Follow::Specular && !drawn.delta {
-            return None;
-        }
-        if drawn.delta {
-            if here.straight && self.branch(&here, vertex, &drawn, [u1, u2, u3]) {
-                here.chance *= drawn.pdf;
-                self.value.iter_mut().for_each(|v| *v *= drawn.pdf);
-            }
-            return self.onwards(&here, vertex, &drawn, u3);
-        }
-        // By all ways of drawing the direction; the material's own may not know it.
-        let pdf = guided.map_or(drawn.pdf, |g| g.density(frame.world(drawn.direction), drawn.pdf));
-        if guided.is_some() {
-            let scale = drawn.pdf / pdf;
-            self.guided += 2;
-            self.value.iter_mut().for_each(|v| *v *= scale);
-            here.guided = (pdf / drawn.pdf).max(1.0);
-        } else {
-            here.guided = 1.0;
-        }
-        here.rival = vertex.rival * vertex.sent(drawn.direction, hero) / pdf;
-        let next = self.onwards(&here, vertex, &drawn, u3)?;
-        let shared = if vertex.shares { drawn.direction.z.abs() } else { 0.0 };
-        Some(Edge { pdf: vertex.seek.then(|| f64::from(ways) * pdf), shared, ..next })
-    }
-
-    /// Draws a direction at a vertex.
-    fn draw(&mut self, at: &Vertex<'_>, u: [f64; 3]) -> Option<Scattered> {
-        let (material, hero) = (at.material, self.hero);
-        // Beside packets each way must be as probable for them as for the path, and they may still carry all bands.
-        if self.split && self.packets.is_none() {
-            material.sample_band(at.outgoing, u, Transport::Radiance, hero, &mut self.value)
-        } else {
-            material.sample(at.outgoing, u, Transport::Radiance, hero, &mut self.value)
-        }
-    }
-
-    /// Sets the other of two Dirac lobes aside, to be followed later; not where they are not two, or one of them is too faint. What was drawn
-    /// of the one stays.
-    fn branch(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
-        if edge.chance * drawn.pdf.min(1.0 - drawn.pdf) < FAINTEST {
-            return false;
-        }
-        std::mem::swap(&mut self.value, &mut self.arriving);
-        // One of them is drawn by the smallest number, the other by the largest: which is which nobody says.
-        let ends = if drawn.direction.z * at.outgoing.z > 0.0 { [LAST, 0.0] } else { [0.0, LAST] };
-        let other = ends.into_iter().find_map(|end| {
-            self.draw(at, [end, u1, u2]).filter(|other| {
-                // They are all that there is.
-                other.delta && other.direction != drawn.direction && (other.pdf + drawn.pdf - 1.0).abs() < 1e-9
-            })
-        });
-        if let Some(other) = other {
-            let mut aside = self.branches.take(self.throughput.len());
-            aside.throughput.copy_from_slice(&self.throughput);
-            aside.polarisation.copy(&self.polarisation);
-            (aside.split, aside.hero, aside.seen) = (self.split, self.hero, self.seen);
-            self.value.iter_mut().for_each(|v| *v *= other.pdf);
-            let next = self.onwards(&Edge { chance: edge.chance * other.pdf, ..*edge }, at, &other, u);
-            self.exchange(&mut aside);
-            match next {
-                Some(next) => self.branches.push(aside, next),
-                None => self.branches.give_back(aside),
-            }
-        }
-        std::mem::swap(&mut self.value, &mut self.arriving);
-        other.is_some()
-    }
-
-    /// Goes on in a direction that was drawn, with what [`Material::sample`] wrote; `edge` is the one that leads there, with what the next has of it.
-    fn onwards(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, u: f64) -> Option<Edge> {
-        let Vertex { material, point, frame, outgoing, .. } = *at;
-        let direction = frame.world(drawn.direction);
-        // A shading normal can send light through the surface: no light goes there.
-        if direction.dot(point.normal) * drawn.direction.z <= 0.0 {
-            return None;
-        }
-        multiply(&mut self.throughput, &self.value);
-        if self.limits.polarisation && drawn.delta {
-            let (hero, directions) = (self.hero, [edge.ray.direction, direction]);
-            let bands = if self.split { hero..hero + 1 } else { 0..self.throughput.len() };
-            let components = |c: &mut [_]| match bands.len() {
-                1 => material.polarise_band(outgoing, drawn.direction, hero, c),
-                _ => material.polarise(outgoing, drawn.direction, c),
-            };
-            let throughput = &mut self.throughput;
-            self.polarisation.turn_bands(components, directions, point.shading, bands.clone(), throughput);
-        } else {
-            self.polarisation.clear();
-        }
-        if drawn.split {
-            self.split();
-        }
-        let index_squared = edge.index_squared * drawn.eta * drawn.eta;
-        let drawn_for = if self.limits.single_band { self.probability_of_hero() } else { 1.0 };
-        let worth = index_squared * drawn_for * edge.guided / edge.chance;
-        let strength = worth * self.throughput.iter().copied().fold(0.0, f64::max);
-        if edge.count >= self.limits.roulette_from && strength < 1.0 {
-            if u >= strength {
-                return None;
-            }
-            self.throughput.iter_mut().for_each(|t| *t /= strength);
-        }
-        if strength == 0.0 {
-            return None;
-        }
-        let ray = Ray { origin: point.origin_towards(direction), direction };
-        let count = edge.count + 1;
-        Some(Edge { ray, pdf: None, from: point.position, shared: 0.0, index_squared, count, ..*edge })
     }
 }
 
