@@ -14,7 +14,7 @@ use photopic::render::ray::{Ray, SurfacePoint};
 use photopic::render::sampler::Sampler;
 use photopic::render::sensor::response::Response;
 
-use crate::pictures::{ROOM, built, camera, figure, rendered};
+use crate::pictures::{ROOM, VIEW, blocks, built, camera, figure, picture};
 
 const LAMP: &str = r#"
 [[shape]]
@@ -39,35 +39,9 @@ dielectric = { medium = "BK7" }
 material = "crown"
 box = { from = [-1.5, -1.5, 1.2], to = [1.5, 1.5, 1.25] }
 "#;
-const VIEW: &str = r#"
-[[sensor]]
-name = "view"
-camera = { at = [0.1, -2.6, 1.3], look_at = [0, 0, 0.5], resolution = [12, 10], field_of_view = "45 deg" }
-"#;
 
 fn settings(built: &Built, seed: u64, guiding: Option<bool>) -> Settings {
     Settings { seed, guiding, virtual_lights: Some(false), ..built.settings.clone() }
-}
-
-/// All channels of all pixels, row by row.
-fn picture(built: &Built, settings: &Settings, samples: u64) -> Vec<f32> {
-    let mut film = Film::new(&built.scene, camera(built), settings, 0, samples, &built.quantities.tristimulus, |_| ());
-    film.survey(false);
-    rendered(film).0
-}
-
-/// Means over the quarters of the picture, of each channel.
-fn quarters(pixels: &[f32]) -> Vec<f64> {
-    let (width, height) = (12, 10);
-    let channels = pixels.len() / width / height;
-    let mut sums = vec![0.0; channels * 4];
-    for (place, row) in pixels.chunks_exact(width).enumerate() {
-        for (x, value) in row.iter().enumerate() {
-            let quarter = 2 * (2 * (place / channels) / height) + 2 * x / width;
-            sums[4 * (place % channels) + quarter] += f64::from(*value) / 30.0;
-        }
-    }
-    sums
 }
 
 /// In every quarter of the picture and every band, by the scatter over seeds: through dispersing glass, a pane, off a mirror, among virtual
@@ -93,7 +67,7 @@ fn pictures_are_those_of_the_path_tracer() {
                 .map(|seed| {
                     let virtual_lights = Some(virtual_lights);
                     let settings = Settings { virtual_lights, ..settings(&built, seed, Some(guiding)) };
-                    quarters(&picture(&built, &settings, 256))
+                    blocks(&picture(&built, &settings, 256).0, camera(&built), 2)
                 })
                 .collect()
         };
@@ -183,7 +157,7 @@ fn a_part_of_a_picture_is_that_of_the_whole() {
 fn paths_are_guided_where_there_is_glass() {
     let with = |text: &str, guiding| {
         let built = built(text);
-        picture(&built, &settings(&built, 3, guiding), 16)
+        picture(&built, &settings(&built, 3, guiding), 16).0
     };
     let ball = format!("[render]\nwavelength_step_nm = 100\n{ROOM}{BALL}{LAMP}{VIEW}");
     assert!(with(&ball, Some(true)) != with(&ball, Some(false)));

@@ -4,39 +4,17 @@
 use std::f64::consts::PI;
 
 use photopic::image::source::{Region, Source};
-use photopic::render::build::Built;
+use photopic::render::build::{Built, NoFiles, build};
+use photopic::render::description::Description;
 use photopic::render::film::Film;
 use photopic::render::integrator::virtual_lights;
 use photopic::render::measure::Settings;
 use photopic::render::noise::Noise;
-use photopic::render::sensor::camera::Camera;
 
-use crate::pictures::{ROOM, built, camera, figure, rendered};
+use crate::pictures::{ROOM, VIEW, blocks, built, camera, figure, picture};
 
 fn settings(built: &Built, seed: u64, virtual_lights: Option<bool>) -> Settings {
     Settings { seed, virtual_lights, branches: Some(1), ..built.settings.clone() }
-}
-
-/// All channels of all pixels, row by row, and the noise.
-fn picture(built: &Built, settings: &Settings, samples: u64) -> (Vec<f32>, Noise) {
-    let camera = camera(built);
-    let mut film = Film::new(&built.scene, camera, settings, 0, samples, &built.quantities.tristimulus, |_| ());
-    film.survey(false);
-    rendered(film)
-}
-
-/// Means over blocks of the picture of each channel: `blocks` along each side.
-fn blocks(pixels: &[f32], camera: &Camera, blocks: usize) -> Vec<f64> {
-    let (width, height) = (camera.width() as usize, camera.height() as usize);
-    let channels = pixels.len() / width / height;
-    let mut sums = vec![0.0; channels * blocks * blocks];
-    for (place, row) in pixels.chunks_exact(width).enumerate() {
-        let (y, channel) = (place / channels, place % channels);
-        for (x, value) in row.iter().enumerate() {
-            sums[(channel * blocks + y * blocks / height) * blocks + x * blocks / width] += f64::from(*value);
-        }
-    }
-    sums
 }
 
 /// Beside the room's floor and red wall.
@@ -50,11 +28,6 @@ const LAMP: &str = r#"
 material = "white"
 emission = { radiance = "1000 cd/m2", spectrum = "D65" }
 rectangle = { corner = [-1, -1, 2.5], edges = [[0, 2, 0], [2, 0, 0]] }
-"#;
-const VIEW: &str = r#"
-[[sensor]]
-name = "view"
-camera = { at = [0.1, -2.6, 1.3], look_at = [0, 0, 0.5], resolution = [12, 10], field_of_view = "45 deg" }
 "#;
 
 /// A point in the middle of a white sphere lights all of it alike: E = Φ/(4πR²(1 − ρ)), and every place has the radiance ρE/π, whichever
@@ -222,6 +195,14 @@ fn they_are_taken_where_they_pay() {
         assert!(with(Some(true)) != with(Some(false)));
         assert!(with(None) == with(Some(pays)), "{pays}");
     }
+}
+
+#[test]
+fn a_number_of_branches_out_of_range_is_told() {
+    let text = format!("[render]\nbranches = 65\n{ROOM}{LAMP}{VIEW}");
+    let description = Description::parse(&text).expect("a description");
+    let error = build(&text, &description, &NoFiles).expect_err("refused").to_string();
+    assert!(error.contains("2:12") && error.contains("`branches` of 65; expected 1 to 64"), "{error}");
 }
 
 /// What a floor and a wall under an open sky send to the camera is found by many directions from few of their places.

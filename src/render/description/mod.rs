@@ -77,8 +77,8 @@ pub struct Render {
     pub guiding: Option<bool>,
     /// Samples of a picture that share a ray of the camera: ways by which its path leaves the first surface that is no mirror and no polished
     /// glass; without it as many as make least noise.
-    #[schemars(range(min = 1, max = 64))]
-    pub branches: Option<u32>,
+    #[schemars(with = "Option<u32>", range(min = 1, max = 64))]
+    pub branches: Option<Spanned<u32>>,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,

@@ -7,7 +7,6 @@
 //! Reference: J. T. Kajiya, *The Rendering Equation*, SIGGRAPH 1986.
 
 pub mod bidirectional;
-pub mod branches;
 pub mod frame;
 pub mod guide;
 pub mod light;
@@ -16,3 +15,4 @@ pub mod packet;
 pub mod path;
 pub mod polarisation;
 pub mod virtual_lights;
+pub mod waiting;

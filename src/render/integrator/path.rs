@@ -10,7 +10,7 @@
 //! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
 //! the path leaves the glass and says nothing about what the path is worth.
 //!
-//! Of two ways at a polished surface that the camera sees both are followed ([`super::branches`]); from diffuse surfaces paths may be guided
+//! Of two ways at a polished surface that the camera sees both are followed ([`super::waiting`]); from diffuse surfaces paths may be guided
 //! ([`super::guide`]).
 //!
 //! A path from a camera may leave the first surface that scatters by n ways, each with 1/n of the weight ([`PathTracer::branching`]); the light
@@ -27,12 +27,12 @@ mod onwards;
 
 use glam::DVec3;
 
-use super::branches::Branches;
 use super::frame::Frame;
 use super::guide::{self, Guide, Guided};
 use super::limits::{Follow, Limits};
 use super::polarisation::Polarisation;
 use super::virtual_lights::VirtualLights;
+use super::waiting::Waiting;
 use crate::render::light::choice::Choice;
 use crate::render::light::shares::Shares;
 use crate::render::material::{Material, Transport};
@@ -71,7 +71,7 @@ pub struct PathTracer<'a> {
     /// Directions that were weighed by it.
     guided: u64,
     /// The other ways at polished surfaces.
-    branches: Branches<Edge>,
+    waiting: Waiting<Edge>,
     /// What lights diffuse surfaces in place of paths from one to another.
     virtual_lights: Option<VirtualLights<'a>>,
     /// Searches along a ray so far.
@@ -82,7 +82,7 @@ pub struct PathTracer<'a> {
     /// Packets land on the meter that the path starts from, so that they compete from its first edge on.
     lands: bool,
     /// Ways by which a path from the camera leaves the first surface that is no mirror and no polished glass.
-    ways: u32,
+    branches: u32,
     /// The share of a way in the sample.
     share: f64,
     /// What the path carried to where they part.
@@ -182,12 +182,12 @@ impl<'a> PathTracer<'a> {
             packets: None,
             guide: None,
             guided: 0,
-            branches: Branches::default(),
+            waiting: Waiting::default(),
             virtual_lights: None,
             searches: 0,
             picture_sr: 0.0,
             lands: false,
-            ways: 1,
+            branches: 1,
             share: 1.0,
             kept: vec![1.0; n],
         }
@@ -196,8 +196,8 @@ impl<'a> PathTracer<'a> {
     /// The same, whose paths from a camera leave the first surface that is no mirror and no polished glass by so many ways, 1 or more; not
     /// beside packets, which count on one.
     #[must_use]
-    pub fn branching(self, ways: u32) -> Self {
-        Self { ways, ..self }
+    pub fn branching(self, branches: u32) -> Self {
+        Self { branches, ..self }
     }
 
     /// The same, for pictures and readings to which packets of flux add what they find: see [`super::bidirectional`].
@@ -241,7 +241,7 @@ impl<'a> PathTracer<'a> {
     pub fn picture_radiance(&mut self, ray: Ray, picture_sr: f64, sampler: &mut Sampler) -> &[f64] {
         self.start(sampler);
         self.picture_sr = if self.packets.is_some() { picture_sr } else { 0.0 };
-        self.follow(Edge { straight: true, ..Edge::first(ray, None, ray.origin) }, self.ways, sampler);
+        self.follow(Edge { straight: true, ..Edge::first(ray, None, ray.origin) }, self.branches, sampler);
         &self.radiance
     }
 
@@ -323,16 +323,16 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Follows a path, which leaves the first surface that scatters by so many ways.
-    fn follow(&mut self, start: Edge, ways: u32, sampler: &mut Sampler) {
-        self.follow_one(start, ways, sampler);
-        while let Some((mut carried, edge)) = self.branches.pop() {
+    fn follow(&mut self, start: Edge, branches: u32, sampler: &mut Sampler) {
+        self.follow_one(start, branches, sampler);
+        while let Some((mut carried, edge)) = self.waiting.pop() {
             self.exchange(&mut carried);
-            self.branches.give_back(carried);
-            self.follow_one(edge, ways, sampler);
+            self.waiting.give_back(carried);
+            self.follow_one(edge, branches, sampler);
         }
     }
 
-    fn follow_one(&mut self, start: Edge, ways: u32, sampler: &mut Sampler) {
+    fn follow_one(&mut self, start: Edge, branches: u32, sampler: &mut Sampler) {
         let mut edge = start;
         loop {
             self.searches += 1;
@@ -347,10 +347,10 @@ impl<'a> PathTracer<'a> {
             }
             // Of a faint way at glass fewer.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "no more than there were")]
-            let ways = (f64::from(ways) * edge.chance).round().max(1.0) as u32;
-            let Some(vertex) = self.arrive(&edge, surface, point, ways, sampler) else { return };
-            if ways > 1 && vertex.seek {
-                self.part(&vertex, ways, sampler);
+            let branches = (f64::from(branches) * edge.chance).round().max(1.0) as u32;
+            let Some(vertex) = self.arrive(&edge, surface, point, branches, sampler) else { return };
+            if branches > 1 && vertex.seek {
+                self.branch(&vertex, branches, sampler);
                 return;
             }
             match self.leave(&vertex, 1, sampler) {
@@ -362,22 +362,22 @@ impl<'a> PathTracer<'a> {
 
     /// Follows all ways from a vertex, each from what the path carried there, with random numbers of its own that are spread evenly over all of
     /// them.
-    fn part(&mut self, vertex: &Vertex<'a>, ways: u32, sampler: &Sampler) {
+    fn branch(&mut self, vertex: &Vertex<'a>, branches: u32, sampler: &Sampler) {
         self.kept.copy_from_slice(&self.throughput);
         let (hero, split, seen) = (self.hero, self.split, self.seen);
-        self.share = 1.0 / f64::from(ways);
-        for way in 0..ways {
-            let mut sampler = sampler.branch(way, ways);
+        self.share = 1.0 / f64::from(branches);
+        for branch in 0..branches {
+            let mut sampler = sampler.branch(branch, branches);
             self.throughput.copy_from_slice(&self.kept);
             (self.hero, self.split, self.seen) = (hero, split, seen);
             if !split {
                 self.choose_hero(&mut sampler);
             }
             if let Some(lights) = &mut self.virtual_lights {
-                lights.take(way as usize);
+                lights.take(branch as usize);
             }
             self.choice.prepare(self.scene.lights(), vertex.point.position);
-            if let Some(edge) = self.leave(vertex, ways, &mut sampler) {
+            if let Some(edge) = self.leave(vertex, branches, &mut sampler) {
                 self.follow_one(edge, 1, &mut sampler);
             }
         }
@@ -390,7 +390,7 @@ impl<'a> PathTracer<'a> {
         edge: &Edge,
         surface: usize,
         point: SurfacePoint,
-        ways: u32,
+        branches: u32,
         sampler: &mut Sampler,
     ) -> Option<Vertex<'a>> {
         let material = self.scene.material(surface);
@@ -446,7 +446,7 @@ impl<'a> PathTracer<'a> {
         if seek {
             self.choice.prepare(self.scene.lights(), point.position);
             // Where the path ends here, no other strategy competes with the light's own.
-            let competing = if self.limits.follow == Follow::All { f64::from(ways) } else { 0.0 };
+            let competing = if self.limits.follow == Follow::All { f64::from(branches) } else { 0.0 };
             let function = |incident, value: &mut [f64]| {
                 let pdf = evaluate(material, incident, outgoing, hero, value);
                 let pdf = guided.map_or(pdf, |g| g.density(frame.world(incident), pdf));

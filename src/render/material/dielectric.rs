@@ -263,6 +263,26 @@ mod tests {
         }
     }
 
+    /// Of a path of one band the lobes are drawn by that band's reflectance alone, which straight ahead is ((n − 1)/(n + 1))² (Fresnel): 0.04 for
+    /// n = 1.5. Nothing is lost at either lobe, and no other band is written.
+    #[test]
+    fn one_band_draws_by_its_own_reflectance() {
+        for (indices, disperses) in [([1.5, 1.5], false), ([1.5, 1.8], true)] {
+            let glass = Dielectric::new(&[1.0, 1.0], &indices).expect("indices");
+            for (u, pdf, weight) in [(0.0399, 0.04, 1.0), (0.0401, 0.96, 1.0 / 2.25)] {
+                let mut weights = [7.0; 2];
+                let numbers = [u, 0.0, 0.0];
+                let drawn = glass.sample_band(DVec3::Z, numbers, Transport::Radiance, 0, &mut weights).expect("a lobe");
+                assert!(
+                    (drawn.pdf - pdf).abs() < 1e-15 && (weights[0] - weight).abs() < 1e-15,
+                    "{drawn:?} {weights:?}"
+                );
+                assert_eq!((weights[1], drawn.split), (7.0, disperses && u > 0.04));
+                assert_eq!(drawn.direction.z, if u < 0.04 { 1.0 } else { -1.0 });
+            }
+        }
+    }
+
     /// Light that is sent back the same way: directions exchange, and f_s(i→o)/n_o² = f_s(o→i)/n_i², so that the radiance's weight
     /// one way is the flux' weight the other way.
     #[test]

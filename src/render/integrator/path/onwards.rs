@@ -1,8 +1,8 @@
 //! How a path goes on from a vertex: what draws the next edge, and both ways at polished surfaces.
 
 use super::{Edge, PathTracer, Vertex, evaluate, multiply};
-use crate::render::integrator::branches::Carried;
 use crate::render::integrator::limits::Follow;
+use crate::render::integrator::waiting::Carried;
 use crate::render::material::{Scattered, Transport};
 use crate::render::ray::Ray;
 use crate::render::sampler::Sampler;
@@ -14,7 +14,7 @@ const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
 
 impl<'a> PathTracer<'a> {
     /// Draws virtual lights for a vertex and the next edge, one of so many that leave it.
-    pub(super) fn leave(&mut self, vertex: &Vertex<'a>, ways: u32, sampler: &mut Sampler) -> Option<Edge> {
+    pub(super) fn leave(&mut self, vertex: &Vertex<'a>, branches: u32, sampler: &mut Sampler) -> Option<Edge> {
         if vertex.shares {
             self.virtual_light(vertex);
         }
@@ -39,7 +39,7 @@ impl<'a> PathTracer<'a> {
             return None;
         }
         if drawn.delta {
-            if here.straight && self.branch(&here, vertex, &drawn, [u1, u2, u3]) {
+            if here.straight && self.set_aside(&here, vertex, &drawn, [u1, u2, u3]) {
                 here.chance *= drawn.pdf;
                 self.value.iter_mut().for_each(|v| *v *= drawn.pdf);
             }
@@ -58,7 +58,7 @@ impl<'a> PathTracer<'a> {
         here.rival = vertex.rival * vertex.sent(drawn.direction, hero) / pdf;
         let next = self.onwards(&here, vertex, &drawn, u3)?;
         let shared = if vertex.shares { drawn.direction.z.abs() } else { 0.0 };
-        Some(Edge { pdf: vertex.seek.then(|| f64::from(ways) * pdf), shared, ..next })
+        Some(Edge { pdf: vertex.seek.then(|| f64::from(branches) * pdf), shared, ..next })
     }
 
     /// Draws a direction at a vertex.
@@ -74,7 +74,7 @@ impl<'a> PathTracer<'a> {
 
     /// Sets the other of two Dirac lobes aside, to be followed later; not where they are not two, or one of them is too faint. What was drawn
     /// of the one stays.
-    fn branch(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
+    fn set_aside(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
         if edge.chance * drawn.pdf.min(1.0 - drawn.pdf) < FAINTEST {
             return false;
         }
@@ -88,7 +88,7 @@ impl<'a> PathTracer<'a> {
             })
         });
         if let Some(other) = other {
-            let mut aside = self.branches.take(self.throughput.len());
+            let mut aside = self.waiting.take(self.throughput.len());
             aside.throughput.copy_from_slice(&self.throughput);
             aside.polarisation.copy(&self.polarisation);
             (aside.split, aside.hero, aside.seen) = (self.split, self.hero, self.seen);
@@ -96,8 +96,8 @@ impl<'a> PathTracer<'a> {
             let next = self.onwards(&Edge { chance: edge.chance * other.pdf, ..*edge }, at, &other, u);
             self.exchange(&mut aside);
             match next {
-                Some(next) => self.branches.push(aside, next),
-                None => self.branches.give_back(aside),
+                Some(next) => self.waiting.push(aside, next),
+                None => self.waiting.give_back(aside),
             }
         }
         std::mem::swap(&mut self.value, &mut self.arriving);

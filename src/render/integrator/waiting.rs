@@ -23,18 +23,18 @@ pub struct Carried {
 
 /// Ways that wait to be followed, each from an end `E`; those that were followed are used again, so that nothing is allocated for a sample.
 #[derive(Debug)]
-pub struct Branches<E> {
+pub struct Waiting<E> {
     waiting: Vec<(Carried, E)>,
     free: Vec<Carried>,
 }
 
-impl<E> Default for Branches<E> {
+impl<E> Default for Waiting<E> {
     fn default() -> Self {
         Self { waiting: Vec::new(), free: Vec::new() }
     }
 }
 
-impl<E> Branches<E> {
+impl<E> Waiting<E> {
     /// Place for what a path of so many bands carries.
     pub fn take(&mut self, bands: usize) -> Carried {
         self.free.pop().unwrap_or_else(|| Carried {
