@@ -60,6 +60,9 @@ impl Distortion {
     /// none within the circle in which the model is one-to-one, or the search does not settle.
     #[must_use]
     pub fn undistort(&self, distorted: DVec2) -> Option<DVec2> {
+        if *self == Self::default() {
+            return Some(distorted);
+        }
         let mut ideal = distorted;
         for _ in 0..30 {
             let jacobian = self.jacobian(ideal);

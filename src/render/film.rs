@@ -10,6 +10,7 @@ use super::guiding;
 use super::integrator::guide::Guide;
 use super::integrator::path::PathTracer;
 use super::integrator::virtual_lights::{self, VirtualLights};
+use super::lanes::weighted;
 use super::light::shares::Shares;
 use super::measure::Settings;
 use super::noise::{Gathered, Noise, Together};
@@ -70,6 +71,8 @@ pub struct Film<'a, F> {
     rays: u64,
     /// Per band, what it adds to X, Y and Z.
     tristimulus: &'a [[f64; 3]],
+    /// What it adds to Y.
+    luminous: Vec<f64>,
     description: Description,
     progress: F,
     noise: Noise,
@@ -127,6 +130,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             samples,
             rays: rays(samples, branches),
             tristimulus,
+            luminous: tristimulus.iter().map(|xyz| xyz[1]).collect(),
             description,
             progress,
             noise: Noise::default(),
@@ -143,7 +147,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
 
     /// Finds out whether guiding pays and which way of taking samples, where that was not said ([`Settings`]). An adaptive picture is then looked
     /// at with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
-    /// all): those of large relative error σ/(L + ε) get more.
+    /// all): those of large relative error σ/(L + ε) get more, those whose samples take much work fewer.
     ///
     /// The samples that it took are thrown away, so that nothing that is done depends on the values of those that count, which would be a
     /// bias. With fewer than sixteen samples nothing is found out.
@@ -264,37 +268,39 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     /// Luminances of some samples of each pixel of a row, by block; `streams` tells their random numbers from others.
     fn surveyed(&self, tracer: &mut PathTracer<'_>, y: usize, samples: u64, streams: u64) -> Vec<Scattered> {
         let width = self.description.width;
-        let mut pixels = vec![Gathered::default(); width];
+        let mut pixels = vec![(Gathered::default(), 0.0); width];
         self.columns(
             tracer,
             y,
             (0..width, streams),
             |_| samples,
-            |x, _, sample| {
-                let luminance = sample.map_or(0.0, |s| s.iter().zip(self.tristimulus).map(|(s, t)| s * t[1]).sum());
+            |x, _, sample, work| {
+                pixels[x].1 += work;
+                let luminance = sample.map_or(0.0, |sample| weighted(sample, &self.luminous));
                 if f64::is_finite(luminance) {
-                    pixels[x].add(luminance);
+                    pixels[x].0.add(luminance);
                 }
             },
         );
         let mut row = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
-        for (x, pixel) in pixels.iter().enumerate() {
+        for (x, (pixel, work)) in pixels.iter().enumerate() {
             let packets = self.packets.as_ref();
             let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
-            row[x / scatter::BLOCK].add(pixel, known);
+            row[x / scatter::BLOCK].add(pixel, known, *work);
         }
         row
     }
 
     /// Takes the samples of some pixels of a row, with virtual lights the first of all pixels, then the second of all. `number` is how many
-    /// a pixel of the row has; `take` is told the pixel's column, the sample's stream and index, and what it is, if the lens shows anything there.
+    /// a pixel of the row has; `take` is told the pixel's column, the sample's stream and index, what it is, if the lens shows anything there, and the
+    /// work that it took.
     fn columns(
         &self,
         tracer: &mut PathTracer<'_>,
         y: usize,
         (columns, streams): (Range<usize>, u64),
         number: impl Fn(usize) -> u64,
-        mut take: impl FnMut(usize, (u64, u64), Option<&[f64]>),
+        mut take: impl FnMut(usize, (u64, u64), Option<&[f64]>, f64),
     ) {
         let width = self.description.width;
         let stream = |x: usize| stream(self.instrument + streams, y * width + x);
@@ -304,7 +310,8 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 let mut sampler = self.settings.sampler(own);
                 for index in 0..number(x) {
                     sampler.start(index);
-                    take(x, (own, index), self.sample(tracer, x, y, &mut sampler));
+                    let (sample, work) = self.sample(tracer, x, y, &mut sampler);
+                    take(x, (own, index), sample, work);
                 }
             }
             return;
@@ -322,24 +329,32 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             }
             for (x, own, sampler) in pixels.iter_mut().filter(|(x, ..)| numbers[*x] > index) {
                 sampler.start(index);
-                take(*x, (*own, index), self.sample(tracer, *x, y, sampler));
+                let (sample, work) = self.sample(tracer, *x, y, sampler);
+                take(*x, (*own, index), sample, work);
             }
         }
     }
 
-    /// One sample of a pixel's radiance per band; `None` where the lens shows nothing.
+    /// One sample of a pixel's radiance per band, `None` where the lens shows nothing, and the work that it took ([`PathTracer::effort`]).
     fn sample<'b>(
         &self,
         tracer: &'b mut PathTracer<'_>,
         x: usize,
         y: usize,
         sampler: &mut Sampler,
-    ) -> Option<&'b [f64]> {
+    ) -> (Option<&'b [f64]>, f64) {
         let [u, v, lens @ ..] = sampler.four();
         #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
-        let ray = self.camera.ray(x as f64 + u, y as f64 + v, lens)?;
-        let picture_sr = self.camera.pixels() / self.camera.pixels_per_solid_angle(ray.direction);
-        Some(tracer.picture_radiance(ray, picture_sr, sampler))
+        let Some(ray) = self.camera.ray(x as f64 + u, y as f64 + v, lens) else { return (None, 1.0) };
+        // Packets alone ask for it.
+        let picture_sr = match self.lights {
+            Some(_) => self.camera.pixels() / self.camera.pixels_per_solid_angle(ray.direction),
+            None => 0.0,
+        };
+        let before = tracer.effort();
+        tracer.picture_radiance(ray, picture_sr, sampler);
+        let work = tracer.effort() - before;
+        (Some(tracer.found()), work)
     }
 
     /// Renders whole rows: the noise and the samples of all channels, one behind the other, of each. What [`Film::noise`] says stays.
@@ -367,17 +382,15 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let mut sums = vec![0.0; region.width * bands];
         let number = |x: usize| self.shares.as_ref().map_or(self.rays, |shares| u64::from(shares[y * width + x]));
         let mut together = Together::default();
-        self.columns(tracer, y, (region.x..region.x + region.width, 0), number, |x, (stream, index), sample| {
+        self.columns(tracer, y, (region.x..region.x + region.width, 0), number, |x, (stream, index), sample, _| {
             let pixel = &mut pixels[x - region.x];
             let mut luminance = 0.0;
             if let Some(sample) = sample {
                 if !pixel.faults.accept(sample, stream, index) {
                     return;
                 }
-                for ((b, s), t) in sums[(x - region.x) * bands..].iter_mut().zip(sample).zip(self.tristimulus) {
-                    *b += s;
-                    luminance += s * t[1];
-                }
+                sums[(x - region.x) * bands..].iter_mut().zip(sample).for_each(|(sum, s)| *sum += s);
+                luminance = weighted(sample, &self.luminous);
             }
             together.add(index, pixel, luminance, number(x));
             pixel.add(luminance);

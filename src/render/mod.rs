@@ -52,6 +52,7 @@ pub mod gonioreflectometer;
 pub mod guiding;
 mod hierarchy;
 pub mod integrator;
+pub mod lanes;
 pub mod light;
 pub mod light_map;
 pub mod material;

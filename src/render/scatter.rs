@@ -1,13 +1,13 @@
 //! How the samples of a picture are shared out among its pixels.
 //!
 //! ```text
-//! n ∝ σ/(L + L̄/100)        σ, L: of the block of pixels and its neighbours
+//! n ∝ σ/(L + L̄/100)/√w        σ, L, w: of the block of pixels and its neighbours
 //! ```
 //!
 //! σ is the scatter within pixels where they have two samples or more, so that edges and textures, which are no noise, count for none.
-//! L counts what is known of the pixels beside the samples, σ does not.
+//! L counts what is known of the pixels beside the samples, σ does not. w is the work that a sample takes.
 //!
-//! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given Σ n (Lagrange); the hundredth of the picture's
+//! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given work Σ n w (Lagrange); the hundredth of the picture's
 //! mean luminance keeps dark pixels from taking all.
 
 use super::noise::Gathered;
@@ -27,18 +27,18 @@ pub(super) struct Scattered {
     squares: f64,
     within: f64,
     known: f64,
+    /// Of all samples.
+    work: f64,
 }
 
 impl Scattered {
-    /// The samples of a pixel, and what of its luminance is known beside them.
-    pub(super) fn add(&mut self, pixel: &Gathered, known: f64) {
+    /// The samples of a pixel, what of its luminance is known beside them, and the work that they took.
+    pub(super) fn add(&mut self, pixel: &Gathered, known: f64, work: f64) {
         let Gathered { count, mean, squares, .. } = *pixel;
         if count > 0.0 {
             let all = squares + count * mean * mean;
-            self.append(
-                1.0,
-                Self { pixels: 1.0, count, sum: count * mean, squares: all, within: squares, known: count * known },
-            );
+            let (sum, known) = (count * mean, count * known);
+            self.append(1.0, Self { pixels: 1.0, count, sum, squares: all, within: squares, known, work });
         }
     }
 
@@ -49,6 +49,7 @@ impl Scattered {
         self.squares += weight * other.squares;
         self.within += weight * other.within;
         self.known += weight * other.known;
+        self.work += weight * other.work;
     }
 
     /// σ of a sample: within pixels where any has two or more; else of all together, which what differs from pixel to pixel adds to.
@@ -60,6 +61,17 @@ impl Scattered {
             self.squares / self.count - average * average
         };
         variance.max(0.0).sqrt()
+    }
+
+    /// σ/(L + `dark`) of a sample; 0 without light.
+    fn noise(&self, dark: f64) -> f64 {
+        let luminance = (self.sum + self.known) / self.count + dark;
+        if luminance > 0.0 { self.deviation() / luminance } else { 0.0 }
+    }
+
+    /// √w; 1 where no work was told.
+    fn worth(&self) -> f64 {
+        if self.work > 0.0 { (self.work / self.count).sqrt() } else { 1.0 }
     }
 }
 
@@ -86,19 +98,20 @@ impl Scatter {
 
     /// The mean over the blocks that have samples of σ/(L + L̄/100).
     pub(super) fn noise(&self) -> f64 {
-        let seen: Vec<usize> = (0..self.blocks.len()).filter(|b| self.blocks[*b].count > 0.0).collect();
-        let deserved = self.deserved();
-        seen.iter().map(|b| deserved[*b]).sum::<f64>() / seen.len().max(1) as f64
+        let seen: Vec<bool> = self.blocks.iter().map(|block| block.count > 0.0).collect();
+        let noises = self.near(|near, dark| near.noise(dark));
+        let sum: f64 = noises.iter().zip(&seen).filter(|(_, seen)| **seen).map(|(noise, _)| noise).sum();
+        sum / seen.iter().filter(|seen| **seen).count().max(1) as f64
     }
 
-    /// σ/(L + L̄/100) of every block.
-    fn deserved(&self) -> Vec<f64> {
+    /// What becomes of every block together with its neighbours, given a hundredth of the picture's mean luminance.
+    fn near(&self, of: impl Fn(&Scattered, f64) -> f64) -> Vec<f64> {
         let columns = self.width.div_ceil(BLOCK);
         let rows = self.height.div_ceil(BLOCK);
         let mut all = Scattered::default();
         self.blocks.iter().for_each(|block| all.append(1.0, *block));
         let dark = 0.01 * (all.sum + all.known) / all.count.max(1.0);
-        let deserved = |bx: usize, by: usize| -> f64 {
+        let around = |bx: usize, by: usize| -> f64 {
             let mut near = Scattered::default();
             for y in by.saturating_sub(1)..(by + 2).min(rows) {
                 for x in bx.saturating_sub(1)..(bx + 2).min(columns) {
@@ -106,16 +119,15 @@ impl Scatter {
                     near.append(if (x, y) == (bx, by) { 4.0 } else { 1.0 }, self.blocks[y * columns + x]);
                 }
             }
-            let luminance = (near.sum + near.known) / near.count + dark;
-            if luminance > 0.0 { near.deviation() / luminance } else { 0.0 }
+            of(&near, dark)
         };
-        (0..rows * columns).map(|b| deserved(b % columns, b / columns)).collect()
+        (0..rows * columns).map(|b| around(b % columns, b / columns)).collect()
     }
 
     /// Samples of each pixel, row by row, of which there are `mean` on average (but for rounding to whole ones).
     pub(super) fn samples(&self, mean: u64) -> Vec<u32> {
         let columns = self.width.div_ceil(BLOCK);
-        let blocks = self.deserved();
+        let blocks = self.near(|near, dark| near.noise(dark) / near.worth());
         let average = blocks.iter().sum::<f64>() / blocks.len() as f64;
         // One sample does not tell its noise.
         let least = if mean > 1 { 2.0 } else { 1.0 };
@@ -152,8 +164,8 @@ mod tests {
         for y in 0..height {
             let mut row = vec![Scattered::default(); width.div_ceil(BLOCK)];
             for x in 0..width {
-                row[x / BLOCK].add(&pixel(&[1.0 - sigma(x), 1.0 + sigma(x)]), 0.0);
-                row[x / BLOCK].add(&Gathered::default(), 0.0);
+                row[x / BLOCK].add(&pixel(&[1.0 - sigma(x), 1.0 + sigma(x)]), 0.0, 1.0);
+                row[x / BLOCK].add(&Gathered::default(), 0.0, 1.0);
             }
             scatter.add(y, &row);
         }
@@ -175,7 +187,7 @@ mod tests {
         let mut row = vec![Scattered::default(); 24];
         for (x, block) in row.iter_mut().enumerate() {
             for luminance in [0.5, 1.5] {
-                block.add(&pixel(&[luminance]), if x < 12 { 0.0 } else { 2.0 });
+                block.add(&pixel(&[luminance]), if x < 12 { 0.0 } else { 2.0 }, 1.0);
             }
         }
         scatter.add(0, &row);
@@ -185,12 +197,29 @@ mod tests {
         assert!((share(4) / share(90) - 3.02 / 1.02).abs() < 1e-4, "{} {}", share(4), share(90));
     }
 
+    /// Of equal noise, samples of four times the work are taken half as often.
+    #[test]
+    fn dear_samples_are_taken_less_often() {
+        let mut scatter = Scatter::new(96, 4);
+        let mut row = vec![Scattered::default(); 24];
+        for (x, block) in row.iter_mut().enumerate() {
+            // Of two samples together.
+            block.add(&pixel(&[0.5, 1.5]), 0.0, if x < 12 { 12.0 } else { 3.0 });
+        }
+        scatter.add(0, &row);
+        let samples = scatter.samples(1 << 20);
+        let share = |x: usize| (f64::from(samples[x]) / f64::from(1 << 20) - LEAST) / (1.0 - LEAST);
+        assert!((share(90) / share(4) - 2.0).abs() < 1e-4, "{} {}", share(4), share(90));
+        // What is compared to choose a way is the noise, whatever it took: σ² = 0.5 of a block, at the mean 1 and its hundredth.
+        assert!((scatter.noise() - 0.5_f64.sqrt() / 1.01).abs() < 1e-12, "{}", scatter.noise());
+    }
+
     #[test]
     fn a_picture_without_light_or_noise_is_sampled_evenly() {
         for luminance in [0.0, 3.0] {
             let mut scatter = Scatter::new(9, 5);
             let mut row = vec![Scattered::default(); 3];
-            row.iter_mut().for_each(|block| block.add(&pixel(&[luminance]), 0.0));
+            row.iter_mut().for_each(|block| block.add(&pixel(&[luminance]), 0.0, 1.0));
             (0..5).for_each(|y| scatter.add(y, &row));
             assert!(scatter.samples(7).iter().all(|&n| n == 7));
         }
@@ -203,7 +232,7 @@ mod tests {
         let mut row = vec![Scattered::default(); 24];
         for (x, block) in row.iter_mut().enumerate() {
             let board = if x < 12 { [0.5, 1.5] } else { [1.0, 1.0] };
-            board.iter().for_each(|l| block.add(&pixel(&[l - 1e-3, l + 1e-3]), 0.0));
+            board.iter().for_each(|l| block.add(&pixel(&[l - 1e-3, l + 1e-3]), 0.0, 1.0));
         }
         scatter.add(0, &row);
         let samples = scatter.samples(1000);

@@ -245,6 +245,12 @@ impl<'a> PathTracer<'a> {
         &self.radiance
     }
 
+    /// The sample that was taken last, per band.
+    #[must_use]
+    pub fn found(&self) -> &[f64] {
+        &self.radiance
+    }
+
     /// One sample of ∫ R(ω) L(ω) dω at a point whose frame is turned to the instrument's axis, per band. Beside packets: the part that
     /// they leave to it, where they land all over an area of `area_m2` that the point is drawn from, or, of 0, are connected with the point.
     pub fn reading(

@@ -131,7 +131,15 @@ impl Environment {
 }
 
 impl Picture {
+    /// The same in all directions.
+    fn is_uniform(&self) -> bool {
+        self.projection == Projection::Equirectangular && self.width * self.height == 1
+    }
+
     fn pixel(&self, local: DVec3) -> Option<[usize; 2]> {
+        if self.is_uniform() {
+            return Some([0, 0]);
+        }
         let place = self.projection.place(local)?;
         let index = |x: f64, n: usize| {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
@@ -270,7 +278,7 @@ impl Light for Environment {
     }
 
     fn is_uniform(&self) -> bool {
-        self.picture.projection == Projection::Equirectangular && self.picture.width * self.picture.height == 1
+        self.picture.is_uniform()
     }
 
     fn importance(&self, _: DVec3) -> f64 {

@@ -3,6 +3,7 @@
 use super::{Edge, PathTracer, Vertex, evaluate, multiply};
 use crate::render::integrator::limits::Follow;
 use crate::render::integrator::waiting::Carried;
+use crate::render::lanes::largest;
 use crate::render::material::{Scattered, Transport};
 use crate::render::ray::Ray;
 use crate::render::sampler::Sampler;
@@ -131,7 +132,7 @@ impl<'a> PathTracer<'a> {
         let index_squared = edge.index_squared * drawn.eta * drawn.eta;
         let drawn_for = if self.limits.single_band { self.probability_of_hero() } else { 1.0 };
         let worth = index_squared * drawn_for * edge.guided / edge.chance;
-        let strength = worth * self.throughput.iter().copied().fold(0.0, f64::max);
+        let strength = worth * largest(&self.throughput);
         if edge.count >= self.limits.roulette_from && strength < 1.0 {
             if u >= strength {
                 return None;
