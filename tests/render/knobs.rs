@@ -89,7 +89,8 @@ fn keys_that_do_not_fit_are_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let (path, file) = (scene(&folder, SPHERE), folder.path().join("knobs.toml"));
     for (keys, expected) in [
-        ("roulette_from = 0", "a `roulette_from` of 0; expected the number of an edge, from 1"),
+        ("roulette_from = 0", "knobs.toml:2:17: a `roulette_from` of 0; expected the number of an edge, from 1"),
+        ("branches = 65", "knobs.toml:2:12: `branches` of 65; expected 1 to 64"),
         ("sampler = \"halton\"", "knobs.toml:2:11: unknown variant `halton`, expected `sobol` or `independent`"),
         ("max_edges = \"few\"", "expected a number of edges, or \"any\""),
         ("wavelength_step_nm = 0.5", "a `wavelength_step_nm` of 0.5; expected 1 to 100"),

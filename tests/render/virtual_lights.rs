@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use photopic::image::source::{Region, Source};
-use photopic::render::build::{Built, NoFiles, build};
+use photopic::render::build::Built;
 use photopic::render::description::Description;
 use photopic::render::film::Film;
 use photopic::render::integrator::virtual_lights;
@@ -200,8 +200,7 @@ fn they_are_taken_where_they_pay() {
 #[test]
 fn a_number_of_branches_out_of_range_is_told() {
     let text = format!("[render]\nbranches = 65\n{ROOM}{LAMP}{VIEW}");
-    let description = Description::parse(&text).expect("a description");
-    let error = build(&text, &description, &NoFiles).expect_err("refused").to_string();
+    let error = Description::parse(&text).expect_err("refused").to_string();
     assert!(error.contains("2:12") && error.contains("`branches` of 65; expected 1 to 64"), "{error}");
 }
 

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::cli::Failure;
 use crate::mistake::{self, Mistake};
-use crate::render::description::{Carried, Model, Render, Solver};
+use crate::render::description::{self, Carried, Model, Render, Solver};
 use crate::render::sampler::Points;
 
 /// What stands in place of the scene's.
@@ -17,7 +17,13 @@ pub(super) struct Settings {
     meter_samples: Option<u64>,
     solver: Option<Solver>,
     max_edges: Option<Edges>,
+    #[serde(default, deserialize_with = "description::roulette_from")]
     roulette_from: Option<u32>,
+    virtual_lights: Option<bool>,
+    guiding: Option<bool>,
+    #[serde(default, deserialize_with = "description::branches")]
+    branches: Option<u32>,
+    polarisation: Option<bool>,
     sampler: Option<Points>,
     wavelengths_per_path: Option<Carried>,
     wavelength_step_nm: Option<f64>,
@@ -89,6 +95,10 @@ impl Settings {
             Some(Edges::Any(Any::Any)) => None,
         };
         render.roulette_from = self.roulette_from.unwrap_or(render.roulette_from);
+        render.virtual_lights = self.virtual_lights.or(render.virtual_lights);
+        render.guiding = self.guiding.or(render.guiding);
+        render.branches = self.branches.or(render.branches);
+        render.polarisation = self.polarisation.or(render.polarisation);
         render.sampler = self.sampler.unwrap_or(render.sampler);
         render.wavelengths_per_path = self.wavelengths_per_path.unwrap_or(render.wavelengths_per_path);
         render.wavelength_tolerance = self.wavelength_tolerance.unwrap_or(render.wavelength_tolerance);

@@ -214,13 +214,6 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     };
     let shadows = render.solver != Solver::Preview;
     let polarisation = analysis.polarisation;
-    if render.roulette_from == 0 {
-        return Err(builder.wrong(&(0..0), "a `roulette_from` of 0; expected the number of an edge, from 1"));
-    }
-    if let Some(found) = render.branches.as_ref().filter(|n| !(1..=64).contains(n.get_ref())) {
-        let message = format!("`branches` of {}; expected 1 to 64", found.get_ref());
-        return Err(builder.wrong(&found.span(), message));
-    }
     let limits = Limits {
         follow,
         max_edges: render.max_edges,
@@ -237,7 +230,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
     let full = render.model == Model::Full;
     let virtual_lights = if full { Some(false) } else { render.virtual_lights };
-    let branches = if full { Some(1) } else { render.branches.as_ref().map(|n| *n.get_ref()) };
+    let branches = if full { Some(1) } else { render.branches };
     let guiding = if full { Some(false) } else { render.guiding };
     let settings = Settings { packets, virtual_lights, branches, guiding, points: render.sampler, ..settings };
     Ok(Built {

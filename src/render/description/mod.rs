@@ -17,7 +17,8 @@ pub mod surface;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
 use light::Light;
 use material::Material;
@@ -78,7 +79,8 @@ pub struct Render {
     /// Samples of a picture that share a ray of the camera: ways by which its path leaves the first surface that is no mirror and no polished
     /// glass; without it as many as make least noise.
     #[schemars(with = "Option<u32>", range(min = 1, max = 64))]
-    pub branches: Option<Spanned<u32>>,
+    #[serde(deserialize_with = "branches")]
+    pub branches: Option<u32>,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,
@@ -87,7 +89,8 @@ pub struct Render {
     /// The longest path, edges from the instrument to the light; without it none is cut.
     pub max_edges: Option<u32>,
     /// The edge from which on chance may end a path of little light (Russian roulette).
-    #[schemars(range(min = 1))]
+    #[schemars(with = "u32", range(min = 1))]
+    #[serde(deserialize_with = "roulette_from")]
     pub roulette_from: u32,
     /// How the random numbers lie.
     pub sampler: Points,
@@ -106,6 +109,26 @@ pub struct Render {
     pub model: Model,
     /// Whether what mirrors and glass polarise is followed to the next of them; where it matters without it.
     pub polarisation: Option<bool>,
+}
+
+/// The number of an edge, from 1.
+///
+/// # Errors
+/// Another number.
+pub(crate) fn roulette_from<'de, D: Deserializer<'de>, N: From<u32>>(deserializer: D) -> Result<N, D::Error> {
+    let found = u32::deserialize(deserializer)?;
+    let wrong = || D::Error::custom("a `roulette_from` of 0; expected the number of an edge, from 1");
+    if found == 0 { Err(wrong()) } else { Ok(found.into()) }
+}
+
+/// A number of branches, 1 to 64.
+///
+/// # Errors
+/// Another number.
+pub(crate) fn branches<'de, D: Deserializer<'de>, N: From<u32>>(deserializer: D) -> Result<N, D::Error> {
+    let found = u32::deserialize(deserializer)?;
+    let wrong = || D::Error::custom(format!("`branches` of {found}; expected 1 to 64"));
+    if (1..=64).contains(&found) { Ok(found.into()) } else { Err(wrong()) }
 }
 
 impl Default for Render {
