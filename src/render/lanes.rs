@@ -14,7 +14,7 @@ pub fn largest(values: &[f64]) -> f64 {
     lanes.iter().chain(rest).copied().fold(0.0, f64::max)
 }
 
-/// Σ v w of as many values as weights.
+/// Σ v w of as many values as weights, summed lane by lane: not to the bits of a sum from first to last.
 #[must_use]
 pub fn weighted(values: &[f64], weights: &[f64]) -> f64 {
     let ((chunks, rest), (by, rest_by)) = (values.as_chunks::<LANES>(), weights.as_chunks::<LANES>());

@@ -186,7 +186,6 @@ mod tests {
         }
     }
 
-    /// Late groups are random, single numbers stratified: 2¹⁶ of them have a mean of 1/2 within five standard errors, or far less.
     /// 16 samples of 4 parts each: 64 points, one in every 64th of every axis, and none of those of the samples themselves.
     #[test]
     fn the_parts_of_all_samples_are_stratified_together() {
@@ -210,6 +209,7 @@ mod tests {
         assert_eq!(filled, [[1; 64]; 4]);
     }
 
+    /// Late groups are random, single numbers stratified: 2¹⁶ of them have a mean of 1/2 within five standard errors, or far less.
     #[test]
     fn late_groups_are_random_and_single_numbers_stratified() {
         let (mut late, mut single) = ([0.0; 4], 0.0);

@@ -69,8 +69,8 @@ impl Scattered {
         if luminance > 0.0 { self.deviation() / luminance } else { 0.0 }
     }
 
-    /// √w; 1 where no work was told.
-    fn worth(&self) -> f64 {
+    /// √w; 1 without samples.
+    fn root_work(&self) -> f64 {
         if self.work > 0.0 { (self.work / self.count).sqrt() } else { 1.0 }
     }
 }
@@ -104,7 +104,7 @@ impl Scatter {
         sum / seen.iter().filter(|seen| **seen).count().max(1) as f64
     }
 
-    /// What becomes of every block together with its neighbours, given a hundredth of the picture's mean luminance.
+    /// A number of every block together with its neighbours, row by row; `of` is given these and a hundredth of the picture's mean luminance.
     fn near(&self, of: impl Fn(&Scattered, f64) -> f64) -> Vec<f64> {
         let columns = self.width.div_ceil(BLOCK);
         let rows = self.height.div_ceil(BLOCK);
@@ -127,7 +127,7 @@ impl Scatter {
     /// Samples of each pixel, row by row, of which there are `mean` on average (but for rounding to whole ones).
     pub(super) fn samples(&self, mean: u64) -> Vec<u32> {
         let columns = self.width.div_ceil(BLOCK);
-        let blocks = self.near(|near, dark| near.noise(dark) / near.worth());
+        let blocks = self.near(|near, dark| near.noise(dark) / near.root_work());
         let average = blocks.iter().sum::<f64>() / blocks.len() as f64;
         // One sample does not tell its noise.
         let least = if mean > 1 { 2.0 } else { 1.0 };
