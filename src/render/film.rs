@@ -1,5 +1,7 @@
 //! A camera's picture: radiance per band and tristimulus values, rendered row by row as whoever writes it asks for them.
 
+mod records;
+
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -8,7 +10,7 @@ use super::bands::Bands;
 use super::estimate::{self, stream};
 use super::guiding;
 use super::integrator::guide::Guide;
-use super::integrator::path::PathTracer;
+use super::integrator::path::{PathTracer, Sight};
 use super::integrator::virtual_lights::{self, VirtualLights};
 use super::lanes::weighted;
 use super::light::shares::Shares;
@@ -276,7 +278,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             |_| samples,
             |x, _, sample, work| {
                 pixels[x].1 += work;
-                let luminance = sample.map_or(0.0, |sample| weighted(sample, &self.luminous));
+                let luminance = sample.map_or(0.0, |(sample, _)| weighted(sample, &self.luminous));
                 if f64::is_finite(luminance) {
                     pixels[x].0.add(luminance);
                 }
@@ -300,7 +302,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         y: usize,
         (columns, streams): (Range<usize>, u64),
         number: impl Fn(usize) -> u64,
-        mut take: impl FnMut(usize, (u64, u64), Option<&[f64]>, f64),
+        mut take: impl FnMut(usize, (u64, u64), Option<(&[f64], &Sight)>, f64),
     ) {
         let width = self.description.width;
         let stream = |x: usize| stream(self.instrument + streams, y * width + x);
@@ -342,7 +344,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         x: usize,
         y: usize,
         sampler: &mut Sampler,
-    ) -> (Option<&'b [f64]>, f64) {
+    ) -> (Option<(&'b [f64], &'b Sight)>, f64) {
         let [u, v, lens @ ..] = sampler.four();
         #[expect(clippy::cast_precision_loss, reason = "a place on the picture")]
         let Some(ray) = self.camera.ray(x as f64 + u, y as f64 + v, lens) else { return (None, 1.0) };
@@ -354,7 +356,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let before = tracer.effort();
         tracer.picture_radiance(ray, picture_sr, sampler);
         let work = tracer.effort() - before;
-        (Some(tracer.found()), work)
+        (Some((tracer.found(), tracer.sight())), work)
     }
 
     /// Renders whole rows: the noise and the samples of all channels, one behind the other, of each. What [`Film::noise`] says stays.
@@ -376,23 +378,28 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             .collect()
     }
 
+    /// Samples of a pixel.
+    fn number(&self, x: usize, y: usize) -> u64 {
+        self.shares.as_ref().map_or(self.rays, |shares| u64::from(shares[y * self.description.width + x]))
+    }
+
     fn row(&self, tracer: &mut PathTracer<'_>, region: Region, y: usize, channels: &[usize], out: &mut [f32]) -> Noise {
         let (width, bands) = (self.description.width, self.tristimulus.len());
         let mut pixels = vec![Gathered::default(); region.width];
         let mut sums = vec![0.0; region.width * bands];
-        let number = |x: usize| self.shares.as_ref().map_or(self.rays, |shares| u64::from(shares[y * width + x]));
+        let number = |x: usize| self.number(x, y);
         let mut together = Together::default();
         self.columns(tracer, y, (region.x..region.x + region.width, 0), number, |x, (stream, index), sample, _| {
             let pixel = &mut pixels[x - region.x];
             let mut luminance = 0.0;
-            if let Some(sample) = sample {
+            if let Some((sample, _)) = sample {
                 if !pixel.faults.accept(sample, stream, index) {
                     return;
                 }
                 sums[(x - region.x) * bands..].iter_mut().zip(sample).for_each(|(sum, s)| *sum += s);
                 luminance = weighted(sample, &self.luminous);
             }
-            together.add(index, pixel, luminance, number(x));
+            together.add(index, pixel, luminance, (number(x), 1.0));
             pixel.add(luminance);
         });
         let mut values = vec![0.0; self.description.channels.len()];

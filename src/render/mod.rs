@@ -40,6 +40,7 @@ pub mod audit;
 pub mod bands;
 pub mod build;
 mod corners;
+pub mod denoise;
 pub mod description;
 pub mod emission;
 pub mod enclosure;

@@ -72,8 +72,8 @@ pub(super) struct Together {
 }
 
 impl Together {
-    /// A sample of a pixel that has `samples` of them; those of a number come one behind the other.
-    pub(super) fn add(&mut self, index: u64, before: &Gathered, luminance: f64, samples: u64) {
+    /// A sample of a pixel that has `samples` of them, which make up a share of what is summed; those of a number come one behind the other.
+    pub(super) fn add(&mut self, index: u64, before: &Gathered, luminance: f64, (samples, share): (u64, f64)) {
         if index != self.index {
             self.variance += 0.5 * self.difference * self.difference;
             (self.index, self.difference) = (index, 0.0);
@@ -81,7 +81,7 @@ impl Together {
         if before.count > 0.0 {
             // One difference less than there are samples.
             let n = samples as f64;
-            self.difference += (luminance - before.last) / (n * (n - 1.0)).sqrt();
+            self.difference += share * (luminance - before.last) / (n * (n - 1.0)).sqrt();
         }
     }
 

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::bands::Bands;
 use super::build::{Instrument, Kind, Quantities};
+use super::denoise::Price;
 use super::estimate::{Estimate, Faults, Figure};
 use super::goniophotometer::Measured;
 use super::gonioreflectometer;
@@ -84,6 +85,8 @@ pub struct Reading {
     pub intensities: Option<Measured>,
     /// What a gonioreflectometer measured.
     pub brdf: Option<gonioreflectometer::Measured>,
+    /// How far the pixels of a filtered picture are off.
+    pub denoised: Option<Price>,
 }
 
 impl Points {
@@ -177,6 +180,7 @@ pub fn of_meters(
         points,
         intensities: None,
         brdf: None,
+        denoised: None,
     })
 }
 
@@ -204,6 +208,7 @@ pub fn of_goniophotometer(
         points: None,
         intensities: Some(measured),
         brdf: None,
+        denoised: None,
     }
 }
 
@@ -232,12 +237,13 @@ pub fn of_gonioreflectometer(
         points: None,
         intensities: None,
         brdf: Some(measured),
+        denoised: None,
     }
 }
 
 /// The mean luminance of a picture.
 #[must_use]
-pub fn of_picture(instrument: &Instrument, noise: &Noise, samples_per_pixel: u64) -> Reading {
+pub fn of_picture(instrument: &Instrument, noise: &Noise, denoised: Option<Price>, samples_per_pixel: u64) -> Reading {
     #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
     let n = noise.pixels.max(1) as f64;
     Reading {
@@ -254,5 +260,6 @@ pub fn of_picture(instrument: &Instrument, noise: &Noise, samples_per_pixel: u64
         points: None,
         intensities: None,
         brdf: None,
+        denoised,
     }
 }

@@ -74,6 +74,9 @@ pub struct Task {
     /// Everything is modelled, required or not.
     #[serde(default)]
     pub full: bool,
+    /// Pictures are filtered, whatever the scene says.
+    #[serde(default)]
+    pub denoise: bool,
     /// The file of settings in place of the scene's, its text; empty without one.
     #[serde(default)]
     pub settings: String,
@@ -332,6 +335,7 @@ mod tests {
                 meter_samples: 100,
                 seed: 1,
                 full: false,
+                denoise: false,
                 settings: String::new(),
             },
             share: Share { index: 1, count: 3 },

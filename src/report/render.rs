@@ -101,6 +101,7 @@ pub fn model(built: &Built) -> Value {
         "virtual_lights": virtual_lights,
         "branches": if built.settings.packets { Some(1) } else { built.settings.branches },
         "guiding": guiding,
+        "denoise": built.denoises,
         "materials": {
             "dispersive": analysis.dispersive,
             "fluorescent": analysis.fluorescent,
@@ -158,6 +159,9 @@ pub fn sensor(reading: &Reading) -> Value {
     if reading.faults.count() > 0 {
         let f = &reading.faults;
         set("faulty_samples", json!({"nan": f.nan, "infinite": f.infinite, "negative": f.negative}));
+    }
+    if let Some(price) = &reading.denoised {
+        set("denoised", json!({"relative_error_before": price.before, "relative_error": price.after}));
     }
     if let Some(spectral) = &reading.spectral {
         set("spectrum", spectrum(spectral));
@@ -307,6 +311,10 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
                 significant(percent, 2),
                 r.samples
             );
+        }
+        if let Some(price) = &r.denoised {
+            let [before, after] = [price.before, price.after].map(|error| significant(100.0 * error, 2));
+            let _ = writeln!(out, "{:width$}  pixels filtered: off by {after} % (as sampled {before} %)", "");
         }
         if let Some(p) = &r.points {
             let values = || p.figures.iter().map(|f| f.value);

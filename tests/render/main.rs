@@ -7,6 +7,7 @@ mod analytic;
 mod audits;
 mod bidirectional;
 mod cli;
+mod denoise;
 mod endless;
 mod files;
 mod guiding;

@@ -19,6 +19,7 @@ use crate::render::format::{self as mesh, Object};
 use crate::render::reading::Reading;
 use crate::report::envelope::Input;
 use crate::spectrum::Spectrum;
+use crate::units::significant;
 
 /// A scene's text and the path that its files are beside.
 pub(in crate::cli) struct Scene {
@@ -164,5 +165,15 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
-    incomplete.chain(dark).chain(preview).chain(endless).chain(faults).collect()
+    let filtered =
+        readings.iter().filter_map(|r| Some((r, r.denoised?))).filter(|(_, price)| price.after > price.before);
+    let filtered = filtered.map(|(r, price)| {
+        let [after, before] = [price.after, price.before].map(|error| significant(100.0 * error, 2));
+        let message =
+            format!("sensor `{}`: filtered, its pixels are off by {after} %, and by {before} % as sampled", r.name);
+        Finding::warning("R010", message)
+            .at(Location::default().in_file(path))
+            .hint("leave out `denoise`, or take more samples")
+    });
+    incomplete.chain(dark).chain(preview).chain(endless).chain(faults).chain(filtered).collect()
 }

@@ -62,6 +62,9 @@ pub(super) struct RenderArgs {
     /// polarisation, lights of no flux. Both agree within their error bars.
     #[arg(long, value_name = "EXTENT", value_parser = model)]
     model: Option<Model>,
+    /// Filter pictures, whatever the scene says: less noise for a bias that is measured and told. Readings are not filtered.
+    #[arg(long, conflicts_with = "preview")]
+    denoise: bool,
     /// A file with `[render]` keys in place of the scene's, as `trade render --settings` writes it; options given here go before it.
     #[arg(long, value_name = "FILE", conflicts_with = "preview")]
     settings: Option<PathBuf>,
@@ -177,6 +180,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         meter_samples: a.meter_samples.or(preview(64)),
         seed: a.seed,
         model: a.model,
+        denoise: a.denoise,
         settings: a.settings.as_deref().map(Settings::read).transpose()?.unwrap_or_default(),
     };
     let work = Work::new(path, &overrides)?;
@@ -239,6 +243,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         meter_samples: Some(task.meter_samples),
         seed: Some(task.seed),
         model: Some(if task.full { Model::Full } else { Model::Minimal }),
+        denoise: task.denoise,
         settings: Settings::parse(&format!("{}: settings", a.shards[0]), task.settings.clone())?,
     };
     let work = Work::new(&task.scene, &overrides)?;

@@ -10,9 +10,11 @@ use super::work::{self, Work};
 use crate::cli::image::{self, ImageCommand};
 use crate::cli::output::Whole;
 use crate::cli::{Failure, Talk};
+use crate::image::description::Description;
 use crate::image::format::exr;
 use crate::image::source::Source;
 use crate::render::build::Built;
+use crate::render::denoise::{Price, denoise};
 use crate::render::description::sensor::Camera as Described;
 use crate::render::film::{self, Film};
 use crate::render::noise::Noise;
@@ -103,43 +105,66 @@ impl<'a> Job<'a> {
         Ok(noise)
     }
 
-    /// Renders the picture and writes what the scene asks for. With a state, the rows go there first, as picture `state.1`.
+    /// Renders the picture and writes what the scene asks for: its noise, and how far the pixels are off where it is filtered. With a state, the
+    /// rows go there first, as picture `state.1`.
     pub(super) fn render(
         &self,
         state: Option<(&mut State, usize)>,
         progress: &ProgressBar,
         written: &mut Vec<String>,
-    ) -> Result<Noise, Failure> {
+    ) -> Result<(Noise, Option<Price>), Failure> {
         let place = Place::new(self)?;
-        let samples = self.samples;
+        let denoises = self.built.denoises;
         let mut film = Film::new(
             &self.built.scene,
             self.camera,
             &self.built.settings,
             self.instrument,
-            samples,
+            self.samples,
             &self.built.quantities.tristimulus,
             |samples| progress.inc(samples),
         );
         let survey = |film: &mut Film<_>| film.survey(self.adaptive);
-        let noise = match state {
+        let (noise, price) = match state {
+            None if denoises => {
+                survey(&mut film);
+                let all: Vec<usize> = (0..film.description().height).collect();
+                let (noises, rows): (Vec<Noise>, Vec<_>) = film.records(&all).into_iter().unzip();
+                let mut noise = Noise::default();
+                noises.iter().for_each(|row| noise.append(row));
+                (noise, Some(self.filter(&place, film.description(), &rows)?))
+            }
             None => {
                 survey(&mut film);
                 self.write(&place.path, &mut film)?;
-                film.noise()
+                (film.noise(), None)
             }
             Some((state, picture)) => {
-                state.render(picture, &mut film, survey)?;
+                let rows =
+                    |film: &mut Film<_>, rows: &[usize]| if denoises { film.records(rows) } else { film.rows(rows) };
+                state.render(picture, &mut film, survey, rows)?;
                 if self.is_part {
-                    return Ok(Noise::default());
+                    return Ok((Noise::default(), None));
                 }
-                let mut stored = state.picture(picture, film.description().clone());
-                self.write(&place.path, &mut stored)?;
-                stored.noise
+                if denoises {
+                    let (noise, rows) = state.rows(picture)?;
+                    (noise, Some(self.filter(&place, film.description(), &rows)?))
+                } else {
+                    let mut stored = state.picture(picture, film.description().clone());
+                    self.write(&place.path, &mut stored)?;
+                    (stored.noise, None)
+                }
             }
         };
         self.derive(&place, progress, written)?;
-        Ok(noise)
+        Ok((noise, price))
+    }
+
+    /// Filters what was sampled and writes it.
+    fn filter(&self, place: &Place, description: &Description, rows: &[Vec<f32>]) -> Result<Price, Failure> {
+        let mut picture = denoise(description.clone(), &self.built.quantities.tristimulus, rows);
+        self.write(&place.path, &mut picture)?;
+        Ok(picture.price())
     }
 
     /// Makes the pictures for the eye of the spectral one.

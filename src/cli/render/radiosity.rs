@@ -32,7 +32,7 @@ impl Work {
             if let Kind::Camera(camera) = &instrument.kind {
                 let job = pictures::Job::new(self, job, n, camera);
                 let noise = job.solved(&fine_gatherer, &progress, &mut done.written)?;
-                done.readings.push(reading::of_picture(instrument, &noise, job.samples.min(16)));
+                done.readings.push(reading::of_picture(instrument, &noise, None, job.samples.min(16)));
                 continue;
             }
             let meters = &self.meters[self.first[n]..self.first[n + 1]];

@@ -9,6 +9,7 @@ use crate::image::description::Description;
 use crate::image::error::Error as ImageError;
 use crate::image::source::{self, Region, Source};
 use crate::render::build::{Built, Kind};
+use crate::render::denoise::record::Layout;
 use crate::render::estimate::REPLICATES;
 use crate::render::film::Film;
 use crate::render::measure::Board;
@@ -41,14 +42,14 @@ fn unfinished(share: Share) -> Failure {
 
 /// The header of the state of a render.
 pub(super) fn header(built: &Built, points: usize, fingerprint: &str, share: Share, task: &Task) -> Header {
-    let channels = built.scene.bands().len() + 3;
+    let bands = built.scene.bands().len();
+    let channels = if built.denoises { Layout { bands }.channels() } else { bands + 3 };
     let pictures = (built.instruments.iter())
         .filter_map(|i| match &i.kind {
             Kind::Camera(c) => Some(Extent { width: c.width() as usize, height: c.height() as usize, channels }),
             _ => None,
         })
         .collect();
-    let bands = built.scene.bands().len();
     Header { fingerprint: fingerprint.to_owned(), task: task.clone(), share, points, bands, pictures }
 }
 
@@ -151,12 +152,13 @@ impl State {
         Ok(())
     }
 
-    /// Renders the rows of a picture that are this state's and not stored yet, after a survey.
+    /// Renders the rows of a picture that are this state's and not stored yet, after a survey, as `rows_of` does.
     pub(super) fn render<F: Fn(u64) + Send + Sync>(
         &mut self,
         picture: usize,
         film: &mut Film<'_, F>,
         survey: impl Fn(&mut Film<'_, F>),
+        rows_of: impl Fn(&mut Film<'_, F>, &[usize]) -> Vec<(Noise, Vec<f32>)>,
     ) -> Result<(), Failure> {
         let wrong = |e: crate::render::spool::Error| Failure::Message(e.to_string());
         let is_joined = self.is_joined;
@@ -175,13 +177,32 @@ impl State {
             survey(film);
         }
         for rows in missing.chunks(ROWS) {
-            for (y, (noise, samples)) in rows.iter().zip(film.rows(rows)) {
+            for (y, (noise, samples)) in rows.iter().zip(rows_of(film, rows)) {
                 if let Some(file) = self.holder(*y) {
                     file.store_row(picture, *y, &noise, &samples).map_err(wrong)?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// All rows of a picture that are stored, and its noise.
+    pub(super) fn rows(&mut self, picture: usize) -> Result<(Noise, Vec<Vec<f32>>), Failure> {
+        let mut noise = Noise::default();
+        let rows = (0..self.header().pictures[picture].height).map(|y| {
+            let (of_row, samples) = self.row(picture, y).map_err(|e| Failure::Message(e.to_string()))?;
+            noise.append(&of_row);
+            Ok(samples)
+        });
+        let rows = rows.collect::<Result<_, Failure>>()?;
+        Ok((noise, rows))
+    }
+
+    /// A row of a picture.
+    fn row(&mut self, picture: usize, y: usize) -> std::io::Result<(Noise, Vec<f32>)> {
+        let missing = || std::io::Error::other(format!("row {y} was not rendered; expected a share that is whole"));
+        let file = self.holder(y).ok_or_else(missing)?;
+        file.row(picture, y).map_err(std::io::Error::other)?.ok_or_else(missing)
     }
 
     /// A picture whose rows are all stored.
@@ -207,10 +228,7 @@ impl Source for Stored<'_> {
         source::check(&self.description, region, channels, out);
         let width = self.description.width;
         for (y, row) in (region.y..).zip(out.chunks_exact_mut((region.width * channels.len()).max(1))) {
-            let missing = || std::io::Error::other(format!("row {y} was not rendered; expected a share that is whole"));
-            let file = self.state.holder(y).ok_or_else(missing)?;
-            let found = file.row(self.picture, y).map_err(std::io::Error::other)?;
-            let (noise, samples) = found.ok_or_else(missing)?;
+            let (noise, samples) = self.state.row(self.picture, y)?;
             self.noise.append(&noise);
             for (channel, out) in channels.iter().zip(row.chunks_exact_mut(region.width)) {
                 out.copy_from_slice(&samples[channel * width + region.x..][..region.width]);

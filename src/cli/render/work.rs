@@ -39,6 +39,8 @@ pub(super) struct Overrides {
     pub meter_samples: Option<u64>,
     pub seed: Option<u64>,
     pub model: Option<Model>,
+    /// Pictures are filtered.
+    pub denoise: bool,
     pub settings: Settings,
 }
 
@@ -49,6 +51,8 @@ pub(super) struct Work {
     pub(super) description: Description,
     inputs: Vec<Input>,
     settings: String,
+    /// Pictures are filtered because the command line says so.
+    denoise: bool,
     /// Paths of the inputs.
     pub read: Vec<String>,
     /// A checksum of everything that the results depend on.
@@ -92,6 +96,10 @@ impl Work {
         render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);
         render.seed = overrides.seed.unwrap_or(render.seed);
         render.model = overrides.model.unwrap_or(render.model);
+        if overrides.denoise {
+            render.denoise = Some(toml::Spanned::new(0..0, true));
+            render.denoises().map_err(|reason| Failure::Message(format!("--denoise: {reason}")))?;
+        }
         let built = build(&scene.text, &description, &scene).map_err(wrong)?;
         let inputs = scene.inputs();
         let read = inputs.iter().map(|i| i.path.clone()).collect();
@@ -112,7 +120,8 @@ impl Work {
         }
         first.push(meters.len());
         let (path, settings) = (path.to_owned(), overrides.settings.text.clone());
-        Ok(Self { path, built, description, inputs, settings, read, fingerprint, meters, first, begun })
+        let denoise = overrides.denoise;
+        Ok(Self { path, built, description, inputs, settings, denoise, read, fingerprint, meters, first, begun })
     }
 
     /// The header of the state of a share.
@@ -124,6 +133,7 @@ impl Work {
             meter_samples: render.meter_samples,
             seed: render.seed,
             full: render.model == Model::Full,
+            denoise: self.denoise,
             settings: self.settings.clone(),
         };
         state::header(&self.built, self.meters.len(), &self.fingerprint, share, &task)
@@ -182,9 +192,9 @@ impl Work {
             if let Kind::Camera(camera) = &instrument.kind {
                 let job = pictures::Job::new(self, job, n, camera);
                 let stored = state.as_deref_mut().map(|s| (s, picture));
-                let noise = job.render(stored, &progress, &mut done.written)?;
+                let (noise, price) = job.render(stored, &progress, &mut done.written)?;
                 picture += 1;
-                done.readings.push(reading::of_picture(instrument, &noise, render.samples));
+                done.readings.push(reading::of_picture(instrument, &noise, price, render.samples));
             } else if let Kind::Goniophotometer(goniophotometer) = &instrument.kind {
                 let measured = goniophotometer.measure(&Run {
                     scene: &self.built.scene,

@@ -122,6 +122,8 @@ pub struct Built {
     /// Light or instruments are in a closed space that absorbs nothing, where paths end by the solver's limits alone: what those leave out has no
     /// bound, and packets that know no limits would never end.
     pub endless: bool,
+    /// Pictures are filtered ([`denoise`](super::denoise)).
+    pub denoises: bool,
 }
 
 /// A mesh of a file some of whose triangles were left out, because they span no area or have a corner that is not finite.
@@ -226,6 +228,10 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
     let incomplete = builder.meshes.into_inner().incomplete;
+    let denoises = render.denoises().map_err(|reason| {
+        let place = render.denoise.as_ref().map_or(0..0, toml::Spanned::span);
+        Error::at(text, &place, reason.to_owned())
+    })?;
     let packets = render.solver == Solver::Bidirectional;
     let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
     let full = render.model == Model::Full;
@@ -247,6 +253,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
         single_scattering,
         incomplete,
         endless,
+        denoises,
     })
 }
 

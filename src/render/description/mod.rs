@@ -81,6 +81,9 @@ pub struct Render {
     #[schemars(with = "Option<u32>", range(min = 1, max = 64))]
     #[serde(deserialize_with = "branches")]
     pub branches: Option<u32>,
+    /// Whether pictures are filtered: less noise for a bias that is measured and told. Readings are not.
+    #[schemars(with = "bool")]
+    pub denoise: Option<Spanned<bool>>,
     /// Samples of a meter, at most where a target is given.
     #[schemars(range(min = 1))]
     pub meter_samples: u64,
@@ -131,6 +134,29 @@ pub(crate) fn branches<'de, D: Deserializer<'de>, N: From<u32>>(deserializer: D)
     if (1..=64).contains(&found) { Ok(found.into()) } else { Err(wrong()) }
 }
 
+impl Render {
+    /// Whether pictures are filtered: not those of a first look, which are no measurement, and not where everything is modelled.
+    ///
+    /// # Errors
+    /// Why they cannot be, in words.
+    pub fn denoises(&self) -> Result<bool, &'static str> {
+        let asked = self.denoise.as_ref().is_some_and(|asked| *asked.get_ref());
+        if !asked || self.solver == Solver::Preview || self.model == Model::Full {
+            return Ok(false);
+        }
+        match self.solver {
+            Solver::Bidirectional => Err(
+                "`denoise` with the solver \"bidirectional\", whose packets lend noise to many pixels at once; expected another solver",
+            ),
+            Solver::Radiosity => {
+                Err("`denoise` with the solver \"radiosity\", whose pictures have no noise; expected another solver")
+            }
+            _ if self.samples < 2 => Err("`denoise` of 1 sample a pixel; expected two or more"),
+            _ => Ok(true),
+        }
+    }
+}
+
 impl Default for Render {
     fn default() -> Self {
         Self {
@@ -140,6 +166,7 @@ impl Default for Render {
             virtual_lights: None,
             branches: None,
             guiding: None,
+            denoise: None,
             meter_samples: 1 << 18,
             seed: 0,
             max_edges: None,

@@ -24,6 +24,7 @@
 
 mod found;
 mod onwards;
+mod sight;
 
 use glam::DVec3;
 
@@ -40,6 +41,8 @@ use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 use crate::render::sensor::response::Response;
+
+pub use sight::Sight;
 
 /// Fainter ways than this are mostly not followed beyond the first surface that is not polished.
 const SEEN: f64 = 0.05;
@@ -87,6 +90,9 @@ pub struct PathTracer<'a> {
     share: f64,
     /// What the path carried to where they part.
     kept: Vec<f64>,
+    /// What the camera sees is noted.
+    sees: bool,
+    sight: Sight,
 }
 
 /// Where the path stands before its next edge.
@@ -190,6 +196,8 @@ impl<'a> PathTracer<'a> {
             branches: 1,
             share: 1.0,
             kept: vec![1.0; n],
+            sees: false,
+            sight: Sight::default(),
         }
     }
 
@@ -297,6 +305,7 @@ impl<'a> PathTracer<'a> {
         self.seen = None;
         self.lands = false;
         self.share = 1.0;
+        self.sight = Sight::default();
         // What a sample takes beside them.
         self.searches += 1;
         self.choose_hero(sampler);
@@ -344,9 +353,15 @@ impl<'a> PathTracer<'a> {
             self.searches += 1;
             let Some((surface, crossing)) = self.scene.surfaces().closest(&edge.ray, f64::INFINITY) else {
                 self.escape(&edge);
+                if self.sees {
+                    self.see_beyond(&edge);
+                }
                 return;
             };
             let point = self.scene.surfaces().surface_point(surface, &edge.ray, &crossing);
+            if self.sees {
+                self.see(&edge, surface, &point);
+            }
             self.emission(&edge, surface, &point);
             if self.limits.max_edges.is_some_and(|max| edge.count >= max) {
                 return;

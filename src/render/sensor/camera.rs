@@ -167,6 +167,12 @@ impl Camera {
         self.height
     }
 
+    /// Where it stands, m.
+    #[must_use]
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
     /// The ray through a point of the picture, in pixels, and a point of the lens, two uniform numbers; `None` where the picture is
     /// dark whatever the scene.
     #[must_use]

@@ -1,0 +1,145 @@
+//! What is kept of a row of pixels to be denoised: two halves of the samples, each with what the camera saw.
+
+use glam::DVec3;
+
+use crate::render::integrator::path::Sight;
+use crate::render::noise::Gathered;
+
+/// Numbers that a [`Sight`] has.
+pub const FEATURES: usize = 8;
+/// The halves of the samples.
+pub const HALVES: usize = 2;
+
+/// Where things stand in a record: for each half the bands, the features, the variance of the luminance's mean in (cd/m²)² and the number of
+/// samples; then the features as rays see them that only look, and the number of these. Each for all pixels of the row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    /// Bands of the scene.
+    pub bands: usize,
+}
+
+impl Layout {
+    /// Numbers of a pixel.
+    #[must_use]
+    pub fn channels(self) -> usize {
+        self.looks() + 1
+    }
+
+    /// The channel where the features begin that rays see which only look.
+    #[must_use]
+    pub fn seen(self) -> usize {
+        HALVES * self.of_half()
+    }
+
+    /// The channel of the number of rays that only look.
+    #[must_use]
+    pub fn looks(self) -> usize {
+        self.seen() + FEATURES
+    }
+
+    fn of_half(self) -> usize {
+        self.bands + FEATURES + 2
+    }
+
+    /// The channel where the bands of a half begin.
+    #[must_use]
+    pub fn band(self, half: usize) -> usize {
+        half * self.of_half()
+    }
+
+    /// The channel where the features of a half begin.
+    #[must_use]
+    pub fn feature(self, half: usize) -> usize {
+        self.band(half) + self.bands
+    }
+
+    /// The channel of the variance of a half.
+    #[must_use]
+    pub fn variance(self, half: usize) -> usize {
+        self.feature(half) + FEATURES
+    }
+
+    /// The channel of the number of samples of a half.
+    #[must_use]
+    pub fn count(self, half: usize) -> usize {
+        self.variance(half) + 1
+    }
+}
+
+/// The sums of a half of a pixel's samples.
+#[derive(Debug, Clone, Default)]
+pub(in crate::render) struct Half {
+    bands: Vec<f64>,
+    features: [f64; FEATURES],
+    luminance: Gathered,
+}
+
+impl Half {
+    pub(in crate::render) fn new(bands: usize) -> Self {
+        Self { bands: vec![0.0; bands], ..Self::default() }
+    }
+
+    /// Adds a sample and what was seen, as far as it lies from `camera`; nothing where the lens shows nothing.
+    pub(in crate::render) fn add(&mut self, sample: Option<(&[f64], &Sight)>, camera: DVec3, luminance: f64) {
+        if let Some((sample, sight)) = sample {
+            self.bands.iter_mut().zip(sample).for_each(|(sum, s)| *sum += s);
+            self.features.iter_mut().zip(features(sight, camera)).for_each(|(sum, s)| *sum += s);
+        }
+        self.luminance.add(luminance);
+    }
+
+    /// Of the samples so far.
+    pub(in crate::render) fn luminance(&self) -> &Gathered {
+        &self.luminance
+    }
+
+    /// Writes the means of half number `half` at column `x` of a record of `width` pixels.
+    pub(in crate::render) fn write(&self, layout: Layout, half: usize, x: usize, width: usize, record: &mut [f32]) {
+        let count = self.luminance.count;
+        let means = self.bands.iter().chain(&self.features).map(|sum| sum / count.max(1.0));
+        let numbers = (layout.band(half)..).zip(means.chain([self.luminance.variance(), count]));
+        numbers.for_each(|(channel, number)| record[channel * width + x] = narrow(number));
+    }
+}
+
+/// What is seen, as far as it lies from `camera`.
+fn features(sight: &Sight, camera: DVec3) -> [f64; FEATURES] {
+    let Sight { position, normal, reflectance, emission } = *sight;
+    let way = if normal == DVec3::ZERO { DVec3::ZERO } else { position - camera };
+    [way.x, way.y, way.z, normal.x, normal.y, normal.z, reflectance, emission]
+}
+
+/// What the rays of a pixel see that only look.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::render) struct See {
+    features: [f64; FEATURES],
+    count: f64,
+    /// Some of them show mirrors or glass, or nothing.
+    unknown: bool,
+}
+
+impl See {
+    /// Adds what a ray sees; `None` where that is not known.
+    pub(in crate::render) fn add(&mut self, sight: Option<&Sight>, camera: DVec3) {
+        let Some(sight) = sight else {
+            self.unknown = true;
+            return;
+        };
+        self.features.iter_mut().zip(features(sight, camera)).for_each(|(sum, s)| *sum += s);
+        self.count += 1.0;
+    }
+
+    /// Writes the means at column `x` of a record of `width` pixels; nothing where something is not known, which would leave a part out.
+    pub(in crate::render) fn write(&self, layout: Layout, x: usize, width: usize, record: &mut [f32]) {
+        if self.unknown || self.count == 0.0 {
+            return;
+        }
+        let means = self.features.iter().map(|sum| sum / self.count).chain([self.count]);
+        (layout.seen()..).zip(means).for_each(|(channel, number)| record[channel * width + x] = narrow(number));
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
+pub(super) fn narrow(value: f64) -> f32 {
+    value as f32
+}
