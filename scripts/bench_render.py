@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--mitsuba] [--bands]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--mitsuba] [--bands] [--denoise]
 
 The neutral JSON scenes are written as TOML for photopic, without polarisation, which neither the references nor Mitsuba's renders of them know (with it
-light in the prism differs from theirs by more than an error of 1e-3); the picture's tristimulus values are compared with the two high-sample references
+light in the prism differs from theirs by a relMSE of 0.013); the picture's tristimulus values are compared with the two high-sample references
 there: the mean of (x − r1)(x − r2) is an unbiased estimate of the squared error, relative to r² + (0.01 mean)². Printed are the seconds of
 the whole command, the relative error of luminance, and the seconds to an error of 1e-3 if it falls as 1/N. With --mitsuba, Mitsuba's LLVM spectral
 variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md).
 With --bands the error is that of the 30 bands of 10 nm from 400 to 700 nm instead: half the mean squared difference of two renders, relative to
 r² + (0.01 mean)² of a render of eight times the samples by photopic; printed are the median over the bands and their range.
+With --denoise photopic's pictures are also filtered (`--denoise`), at 2, 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
+better as 1/N, so the seconds are those between the last two, along a straight line of logarithms.
 Exit status 2 where the scenes are not there.
 """
 
@@ -105,11 +107,11 @@ def errors(xyz, name):
     return error.mean((0, 1)), xyz.mean((0, 1)) / mean - 1
 
 
-def ours(binary, name, samples, step_nm, adaptive, solver, channels=("X", "Y", "Z"), seed=0):
+def ours(binary, name, samples, step_nm, adaptive, solver, channels=("X", "Y", "Z"), seed=0, options=()):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
         (path / "scene.toml").write_text(scene(name, step_nm, adaptive, solver))
-        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "--seed", str(seed), "-o", "out.txt"]
+        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "--seed", str(seed), "-o", "out.txt", *options]
         start = time.perf_counter()
         subprocess.run(command, cwd=folder, check=True)
         seconds = time.perf_counter() - start
@@ -173,6 +175,24 @@ def compare_bands(binary, name, arguments):
         print(f"{name:12} {'ratio':13} {'':19} {np.median(ratio):10.2f} {ratio.min():8.2f} to {ratio.max():.2f}", flush=True)
 
 
+def denoised(name, run):
+    """Prints filtered renders of ever more samples until one is good enough, and the seconds to it."""
+    seconds, error = [], []
+    for samples in (2**k for k in range(1, 12)):
+        spent, xyz = run(samples)
+        errors_xyz, mean = errors(xyz / CANDELA, name)
+        seconds.append(spent)
+        error.append(errors_xyz[1])
+        print(f"{name:12} {f'denoised, {samples}':13} {spent:8.2f} {error[-1]:10.5f} {'':10} {100 * mean[1]:10.3f} %", flush=True)
+        if error[-1] < 1e-3:
+            break
+    else:
+        print(f"{name:12} {'denoised':13} not reached", flush=True)
+        return
+    at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
+    print(f"{name:12} {'denoised':13} {'':8} {'':10} {at:10.2f}", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("binary", nargs="?", default=str(ROOT / "target" / "release" / "photopic"))
@@ -182,6 +202,7 @@ def main():
     parser.add_argument("--even", action="store_true", help="photopic gives every pixel as many samples")
     parser.add_argument("--solvers", default="path", help="photopic's, such as path,bidirectional")
     parser.add_argument("--mitsuba", action="store_true")
+    parser.add_argument("--denoise", action="store_true", help="photopic's filtered pictures as well, of as many samples as they need")
     parser.add_argument("--bands", action="store_true", help="the error of bands of 10 nm in place of luminance")
     arguments = parser.parse_args()
     if not SHARED.is_dir():
@@ -205,6 +226,9 @@ def main():
             error, mean = errors(xyz, name)
             to = seconds * error[1] / 1e-3
             print(f"{name:12} {program:13} {seconds:8.2f} {error[1]:10.5f} {to:10.2f} {100 * mean[1]:10.3f} %", flush=True)
+        if arguments.denoise:
+            render = lambda samples, name=name: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", options=["--denoise"])
+            denoised(name, render)
     return 0
 
 

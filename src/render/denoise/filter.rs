@@ -66,25 +66,23 @@ impl Filter {
                 sums.zip(self.scratch.iter().zip(samples)).for_each(|(sum, (k, sample))| *sum += k * sample);
             }
         }
-        for x in 0..width {
-            if bands.chunks_exact(width).any(|band| band[x] < 0.0) {
-                self.average(records, half, (x, y), &mut bands);
+        for (band, values) in bands.chunks_exact_mut(width).enumerate() {
+            for (x, value) in values.iter_mut().enumerate().filter(|(_, value)| **value < 0.0) {
+                *value = self.average(records, layout.band(half) + band, x, y);
             }
         }
         bands
     }
 
-    /// Puts the weighted mean of the neighbours in place of a fit that went below 0.
-    fn average(&self, records: &Rows<'_>, half: usize, (x, y): (usize, usize), bands: &mut [f32]) {
+    /// The weighted mean of a pixel's neighbours, for a fit that went below 0.
+    fn average(&self, records: &Rows<'_>, channel: usize, x: usize, y: usize) -> f32 {
         let own = neighbours().zip(&self.weights).filter_map(|([dx, dy], weights)| {
             Some((x.checked_add_signed(dx)?, y.checked_add_signed(dy)?, f64::from(weights[x]))).filter(|n| n.2 > 0.0)
         });
-        let total: f64 = own.clone().map(|n| n.2).sum();
-        for (band, values) in bands.chunks_exact_mut(records.width).enumerate() {
-            let channel = records.layout.band(half) + band;
-            let sum: f64 = own.clone().map(|(x, y, weight)| weight * records.at(x, y, channel)).sum();
-            values[x] = narrow(sum / total);
-        }
+        let (sum, total) = own.fold((0.0, 0.0), |(sum, total), (x, y, weight)| {
+            (sum + weight * records.at(x, y, channel), total + weight)
+        });
+        narrow(sum / total)
     }
 
     /// Writes by how much the features of a half differ from those of the pixels of the row.

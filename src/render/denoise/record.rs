@@ -114,6 +114,8 @@ fn features(sight: &Sight, camera: DVec3) -> [f64; FEATURES] {
 pub(in crate::render) struct See {
     features: [f64; FEATURES],
     count: f64,
+    /// The least and the greatest emission.
+    emission: [f64; 2],
     /// Some of them show mirrors or glass, or nothing.
     unknown: bool,
 }
@@ -126,7 +128,15 @@ impl See {
             return;
         };
         self.features.iter_mut().zip(features(sight, camera)).for_each(|(sum, s)| *sum += s);
+        let [least, greatest] = if self.count > 0.0 { self.emission } else { [sight.emission; 2] };
+        self.emission = [least.min(sight.emission), greatest.max(sight.emission)];
         self.count += 1.0;
+    }
+
+    /// Whether something shines much more than what is beside it.
+    pub(in crate::render) fn is_at_an_edge(&self) -> bool {
+        let [least, greatest] = self.emission;
+        !self.unknown && greatest > 2.0 * least
     }
 
     /// Writes the means at column `x` of a record of `width` pixels; nothing where something is not known, which would leave a part out.

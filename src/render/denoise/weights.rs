@@ -1,10 +1,11 @@
 //! How alike pixels are: weights of non-local means.
 //!
 //! ```text
-//! w(p, q) = exp(−max(0, d)),   d = mean over the pixels of two patches of ((L_p − L_q)² − (σ²_p + min(σ²_p, σ²_q))) / (k² (σ²_p + σ²_q))
+//! w(p, q) = exp(−max(0, d)),   d = mean over the pixels of two patches of ((L_p − L_q)² − s²) / (k² s²),   s² = σ²_p + min(σ²_p, σ²_q)
 //! ```
 //!
-//! What two pixels differ by through their noise alone is taken off, so that pixels count as alike that cannot be told apart.
+//! What two pixels differ by through their noise alone is taken off, so that pixels count as alike that cannot be told apart. The paper divides by
+//! σ²_p + σ²_q; here a quiet pixel takes nothing from one that may be as bright by its own noise alone, as at the rim of a caustic.
 //!
 //! Reference: F. Rousselle, C. Knaus, M. Zwicker, *Adaptive Rendering with Non-local Means Filtering*, ACM TOG 31(6) (2012), eq. 3 and 4.
 
@@ -39,10 +40,10 @@ impl Guide {
             let here = self.luminance.row(row)[columns.clone()].iter().zip(&self.variance.row(row)[columns.clone()]);
             let there = self.luminance.row(beside)[shifted.clone()].iter().zip(&self.variance.row(beside)[shifted]);
             for (distance, ((a, va), (b, vb))) in scratch[columns.clone()].iter_mut().zip(here.zip(there)) {
-                let (difference, variance) = (a - b, va + vb);
-                let numerator = difference * difference - (va + va.min(*vb));
+                let (difference, variance) = (a - b, va + va.min(*vb));
                 // Without noise whatever differs is told apart.
-                *distance += numerator / (STRENGTH * STRENGTH * variance + f32::MIN_POSITIVE);
+                *distance +=
+                    (difference * difference - variance) / (STRENGTH * STRENGTH * variance + f32::MIN_POSITIVE);
             }
         }
         let distances = &scratch[columns.clone()];

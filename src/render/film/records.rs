@@ -16,6 +16,8 @@ const LOOKED: u64 = SURVEYED - 4;
 /// For so many samples a ray of the pixel only looks, up to a number: that takes little beside them, and edges are seen more sharply.
 const LOOK: u64 = 4;
 const MOST_LOOKS: u64 = 16;
+/// Where they see bright things beside dark ones so many are sent.
+const AT_EDGES: u64 = 64;
 
 impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
     /// Renders whole rows as they are kept to be filtered: the noise and the record of each, of the form that [`Layout`] has. For pictures without
@@ -67,7 +69,11 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
     fn look(&self, tracer: &mut PathTracer<'_>, x: usize, y: usize) -> See {
         let mut seen = See::default();
         let mut sampler = self.settings.sampler(stream(self.instrument + LOOKED, y * self.description.width + x));
-        for index in 0..self.samples.div_ceil(LOOK).min(MOST_LOOKS) {
+        let few = self.samples.div_ceil(LOOK).min(MOST_LOOKS);
+        for index in 0..AT_EDGES {
+            if index >= few && !seen.is_at_an_edge() {
+                break;
+            }
             sampler.start(index);
             let [u, v, lens @ ..] = sampler.four();
             let ray = self.camera.ray(x as f64 + u, y as f64 + v, lens);
