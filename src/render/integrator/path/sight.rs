@@ -1,5 +1,7 @@
 //! What the camera sees along a ray: the first surface that is no mirror and no clear glass.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::{Edge, PathTracer};
@@ -15,7 +17,7 @@ pub struct Sight {
     pub position: DVec3,
     /// The shading normal on the side that is seen; 0 beyond the scene.
     pub normal: DVec3,
-    /// The share of light that is scattered, mean over the bands; 1 where that is not known.
+    /// The reflectance where it is diffuse, mean over the bands, else 1; times the factors of textures.
     pub reflectance: f64,
     /// The radiance that it emits, mean over the bands, W/(m²·sr·nm).
     pub emission: f64,
@@ -68,11 +70,11 @@ impl PathTracer<'_> {
         if material.converts() {
             material.convert(point.uv, Transport::Radiance, &mut self.value, &mut self.arriving);
         }
-        let scattered = material.albedo(outgoing, &mut self.arriving);
-        if scattered.is_none() {
-            self.arriving.fill(1.0);
+        if material.is_diffuse() {
+            let normal = DVec3::new(0.0, 0.0, outgoing.z.signum());
+            material.evaluate(normal, outgoing, Transport::Radiance, &mut self.arriving);
+            self.value.iter_mut().zip(&self.arriving).for_each(|(v, f)| *v *= PI * f);
         }
-        super::multiply(&mut self.value, &self.arriving);
         let normal = if outgoing.z < 0.0 { -point.shading } else { point.shading };
         self.sight.position += edge.chance * point.position;
         self.sight.normal += edge.chance * normal;
