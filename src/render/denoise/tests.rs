@@ -70,7 +70,7 @@ fn what_has_no_noise_stays_as_it_is() {
 /// What is linear in the features is kept however much is borrowed: a texture, a slope. The ridge takes a thousandth off slopes.
 #[test]
 fn what_the_camera_sees_is_kept() {
-    let reflectance = |x: usize, y: usize| if (x / 2 + y / 3) % 2 == 0 { 0.9 } else { 0.2 };
+    let reflectance = |x: usize, y: usize| if (x / 2 + y / 3).is_multiple_of(2) { 0.9 } else { 0.2 };
     let truth = |x: usize, y: usize| 10.0 * reflectance(x, y) + 0.05 * x as f64 - 0.02 * y as f64 + 3.0;
     let sigma = 0.3;
     let picture = sampled([40, 30], 2, |x, y| {
@@ -107,7 +107,7 @@ fn noise_is_lessened_by_what_the_price_says() {
 /// Stripes that the features do not tell, and noise that hides them: blurred, and the price says so.
 #[test]
 fn the_price_counts_the_bias() {
-    let truth = |x: usize, _: usize| if x / 3 % 2 == 0 { 1.0 } else { 2.0 };
+    let truth = |x: usize, _: usize| if (x / 3).is_multiple_of(2) { 1.0 } else { 2.0 };
     let (mut true_square, mut stated, mut noise) = (0.0, 0.0, 0.0);
     for seed in 0..10 {
         let picture = sampled([48, 40], 30 + seed, |x, y| (truth(x, y), wall(x, y), 1.0));
