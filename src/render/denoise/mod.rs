@@ -1,7 +1,7 @@
 //! Pictures with less noise: every pixel borrows from those around it that look alike.
 //!
 //! A picture is sampled in two halves that know nothing of one another. Each half is filtered by weights that the luminance of the *other* one
-//! gives ([`weights`]), so that no pixel is chosen for its own noise, and by a fit to what the camera saw there ([`fit`]): edges and textures
+//! gives (`weights`), so that no pixel is chosen for its own noise, and by a fit to what the camera saw there (`fit`): edges and textures
 //! that no light made are kept. All bands are filtered by the same numbers. The picture is the mean of both, by their samples.
 //!
 //! The price is a bias, in exchange for noise. It is measured, not guessed: what one half was filtered to is compared with the other half as it was
@@ -16,11 +16,11 @@
 //!
 //! | file | what it is |
 //! |---|---|
-//! | [`record`], [`rows`] | what is kept of a row of pixels; the rows of a picture |
-//! | [`filter`] | a row of pixels, filtered |
-//! | [`weights`] | how alike two pixels are |
-//! | [`fit`] | what each neighbour counts |
-//! | [`plane`] | one number per pixel |
+//! | [`record`], `rows` | what is kept of a row of pixels; the rows of a picture |
+//! | `filter` | a row of pixels, filtered |
+//! | `weights` | how alike two pixels are |
+//! | `fit` | what each neighbour counts |
+//! | `plane` | one number per pixel |
 
 use rayon::prelude::*;
 
