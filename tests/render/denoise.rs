@@ -166,6 +166,13 @@ fn what_cannot_be_filtered_is_told() {
     told("denoise = 1", &[], "scene.toml:3:11: ");
     told("", &["--denoise", "--samples", "1"], "--denoise: `denoise` of 1 sample a pixel");
     told("solver = \"radiosity\"", &["--denoise"], "--denoise: `denoise` with the solver \"radiosity\"");
+    std::fs::write(folder.path().join("own.toml"), "[render]\ndenoise = true\n").expect("written");
+    let own = folder.path().join("own.toml").display().to_string();
+    told(
+        "solver = \"bidirectional\"",
+        &["--settings", &own],
+        "--settings: `denoise` with the solver \"bidirectional\"",
+    );
     // A first look is not filtered.
     let path = scene(&folder, &format!("[render]\nwavelength_step_nm = 100\ndenoise = true\n{ROOM}{LAMP}{VIEW}"));
     photopic().arg("render").arg(&path).arg("--preview").assert().success();

@@ -15,6 +15,7 @@ use crate::finding::{Finding, Location};
 use crate::luminaire::Luminaire;
 use crate::luminaire::format::{self, ReadOptions};
 use crate::render::build::{Built, Files, Instrument, Kind, PictureFile};
+use crate::render::denoise::Price;
 use crate::render::format::{self as mesh, Object};
 use crate::render::reading::Reading;
 use crate::report::envelope::Input;
@@ -165,12 +166,13 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
-    let filtered =
-        readings.iter().filter_map(|r| Some((r, r.denoised?))).filter(|(_, price)| price.after > price.before);
+    // What is known is the error of a half, which is sampled with twice the variance.
+    let is_worse = |price: &Price| price.after > std::f64::consts::SQRT_2 * price.before;
+    let filtered = readings.iter().filter_map(|r| Some((r, r.denoised.filter(is_worse)?)));
     let filtered = filtered.map(|(r, price)| {
         let [after, before] = [price.after, price.before].map(|error| significant(100.0 * error, 2));
         let message =
-            format!("sensor `{}`: filtered, its pixels are off by {after} %, and by {before} % as sampled", r.name);
+            format!("sensor `{}`: filtered, its pixels are off by {after} %, as sampled by {before} %", r.name);
         Finding::warning("R010", message)
             .at(Location::default().in_file(path))
             .hint("leave out `denoise`, or take more samples")

@@ -21,7 +21,7 @@ pub(super) struct Settings {
     roulette_from: Option<u32>,
     virtual_lights: Option<bool>,
     guiding: Option<bool>,
-    denoise: Option<toml::Spanned<bool>>,
+    pub denoise: Option<bool>,
     #[serde(default, deserialize_with = "description::branches")]
     branches: Option<u32>,
     polarisation: Option<bool>,
@@ -98,7 +98,8 @@ impl Settings {
         render.roulette_from = self.roulette_from.unwrap_or(render.roulette_from);
         render.virtual_lights = self.virtual_lights.or(render.virtual_lights);
         render.guiding = self.guiding.or(render.guiding);
-        render.denoise = self.denoise.clone().or(render.denoise.take());
+        let denoise = self.denoise.map(|filtered| toml::Spanned::new(0..0, filtered));
+        render.denoise = denoise.or(render.denoise.take());
         render.branches = self.branches.or(render.branches);
         render.polarisation = self.polarisation.or(render.polarisation);
         render.sampler = self.sampler.unwrap_or(render.sampler);

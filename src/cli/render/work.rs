@@ -98,7 +98,11 @@ impl Work {
         render.model = overrides.model.unwrap_or(render.model);
         if overrides.denoise {
             render.denoise = Some(toml::Spanned::new(0..0, true));
-            render.denoises().map_err(|reason| Failure::Message(format!("--denoise: {reason}")))?;
+        }
+        // What the scene does not ask for has no place in it.
+        let asked = [("--denoise", overrides.denoise), ("--settings", overrides.settings.denoise.is_some())];
+        if let Some((option, _)) = asked.iter().find(|(_, asked)| *asked) {
+            render.denoises().map_err(|reason| Failure::Message(format!("{option}: {reason}")))?;
         }
         let built = build(&scene.text, &description, &scene).map_err(wrong)?;
         let inputs = scene.inputs();

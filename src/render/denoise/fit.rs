@@ -22,7 +22,7 @@ const RIDGE: f64 = 1e-3;
 /// Sums of the fits of a row of pixels.
 pub(super) struct Fits {
     width: usize,
-    /// The lower half of M without its first row, row by row, for all pixels each: w x_j x_k.
+    /// The lower half of M, row by row, each for all pixels: Σ w x_j x_k.
     sums: Vec<f32>,
     /// s, unknown by unknown.
     solutions: Vec<f32>,
