@@ -10,7 +10,7 @@ the whole command, the relative error of luminance, and the seconds to an error 
 variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md).
 With --bands the error is that of the 30 bands of 10 nm from 400 to 700 nm instead: half the mean squared difference of two renders, relative to
 r² + (0.01 mean)² of a render of eight times the samples by photopic; printed are the median over the bands and their range.
-With --denoise photopic's pictures are also filtered (`--denoise`), at 2, 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
+With --denoise photopic's pictures are also filtered (`--denoise`), at 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
 better as 1/N, so the seconds are those between the last two, along a straight line of logarithms.
 Exit status 2 where the scenes are not there.
 """
@@ -178,7 +178,7 @@ def compare_bands(binary, name, arguments):
 def denoised(name, run):
     """Prints filtered renders of ever more samples until one is good enough, and the seconds to it."""
     seconds, error = [], []
-    for samples in (2**k for k in range(1, 12)):
+    for samples in (2**k for k in range(2, 12)):
         spent, xyz = run(samples)
         errors_xyz, mean = errors(xyz / CANDELA, name)
         seconds.append(spent)
@@ -188,6 +188,9 @@ def denoised(name, run):
             break
     else:
         print(f"{name:12} {'denoised':13} not reached", flush=True)
+        return
+    if len(error) == 1:
+        print(f"{name:12} {'denoised':13} {'':8} {'':10} {'at most':>4} {seconds[0]:.2f}", flush=True)
         return
     at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
     print(f"{name:12} {'denoised':13} {'':8} {'':10} {at:10.2f}", flush=True)

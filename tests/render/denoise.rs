@@ -162,9 +162,9 @@ fn what_cannot_be_filtered_is_told() {
         &[],
         "scene.toml:4:11: `denoise` with the solver \"bidirectional\"",
     );
-    told("samples = 1\ndenoise = true", &[], "scene.toml:4:11: `denoise` of 1 sample a pixel; expected two or more");
+    told("samples = 3\ndenoise = true", &[], "scene.toml:4:11: `denoise` of fewer than 4 samples a pixel");
     told("denoise = 1", &[], "scene.toml:3:11: ");
-    told("", &["--denoise", "--samples", "1"], "--denoise: `denoise` of 1 sample a pixel");
+    told("", &["--denoise", "--samples", "1"], "--denoise: `denoise` of fewer than 4 samples a pixel");
     told("solver = \"radiosity\"", &["--denoise"], "--denoise: `denoise` with the solver \"radiosity\"");
     std::fs::write(folder.path().join("own.toml"), "[render]\ndenoise = true\n").expect("written");
     let own = folder.path().join("own.toml").display().to_string();

@@ -79,7 +79,7 @@ pub fn denoise(description: Description, tristimulus: &[[f64; 3]], rows: &[Vec<f
     let guides = [0, 1].map(|half| {
         let variance = |x: usize, y: usize| match records.count(x, y, half) > 1.0 {
             true => records.at(x, y, layout.variance(half)),
-            // One sample says nothing of itself.
+            // Where faults left no second sample, one says nothing of itself.
             false => (halves[0].at(x, y) - halves[1].at(x, y)).powi(2) * records.share(x, y, 1 - half),
         };
         let variance = Plane::of(width, rows.len(), variance).smooth();

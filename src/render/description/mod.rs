@@ -151,7 +151,7 @@ impl Render {
             Solver::Radiosity => {
                 Err("`denoise` with the solver \"radiosity\", whose pictures have no noise; expected another solver")
             }
-            _ if self.samples < 2 => Err("`denoise` of 1 sample a pixel; expected two or more"),
+            _ if self.samples < 4 => Err("`denoise` of fewer than 4 samples a pixel; expected four or more"),
             _ => Ok(true),
         }
     }

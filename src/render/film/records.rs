@@ -9,6 +9,8 @@ use crate::render::integrator::path::PathTracer;
 use crate::render::lanes::weighted;
 use crate::render::noise::{Gathered, Noise, Together};
 
+/// Rays of a pixel at least: one of a half does not tell its noise, and what the other half says of it is not told apart from that one's own.
+const FEWEST: u64 = 4;
 /// Streams of the second half of the samples: halves that know nothing of one another.
 const OTHER_HALF: u64 = SURVEYED - 3;
 /// And of the rays that only look.
@@ -21,7 +23,7 @@ const AT_EDGES: u64 = 64;
 
 impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
     /// Renders whole rows as they are kept to be filtered: the noise and the record of each, of the form that [`Layout`] has. For pictures without
-    /// packets, of two samples a pixel or more.
+    /// packets, of four samples a pixel or more.
     #[must_use]
     pub fn records(&self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
         rows.par_iter()
@@ -34,8 +36,9 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
         let mut record = vec![0.0; layout.channels() * width];
         let mut pixels = vec![Gathered::default(); width];
         let mut together = 0.0;
+        let all = |x: usize| self.number(x, y).max(FEWEST);
         for (half, streams) in [0, OTHER_HALF].into_iter().enumerate() {
-            let number = |x: usize| if half == 0 { self.number(x, y) / 2 } else { self.number(x, y).div_ceil(2) };
+            let number = |x: usize| if half == 0 { all(x) / 2 } else { all(x).div_ceil(2) };
             let mut halves = vec![Half::new(layout.bands); width];
             let mut noise = Together::default();
             self.columns(tracer, y, (0..width, streams), number, |x, (stream, index), sample, _| {
@@ -44,7 +47,7 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
                     Some((sample, _)) => weighted(sample, &self.luminous),
                     None => 0.0,
                 };
-                let share = number(x) as f64 / self.number(x, y) as f64;
+                let share = number(x) as f64 / all(x) as f64;
                 noise.add(index, halves[x].luminance(), luminance, (number(x), share));
                 halves[x].add(sample, self.camera.position(), luminance);
                 pixels[x].add(luminance);
