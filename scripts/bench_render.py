@@ -190,7 +190,7 @@ def denoised(name, run):
         print(f"{name:12} {'denoised':13} not reached", flush=True)
         return
     if len(error) == 1:
-        print(f"{name:12} {'denoised':13} {'':8} {'':10} {'at most':>4} {seconds[0]:.2f}", flush=True)
+        print(f"{name:12} {'denoised':13} {'':8} {'':10} at most {seconds[0]:.2f}", flush=True)
         return
     at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
     print(f"{name:12} {'denoised':13} {'':8} {'':10} {at:10.2f}", flush=True)

@@ -12,7 +12,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::record::FEATURES;
+use super::record::{FEATURES, narrow};
 
 /// Unknowns: the value and its slopes.
 const UNKNOWNS: usize = FEATURES + 1;
@@ -63,9 +63,7 @@ impl Fits {
         for x in 0..width {
             let solution = solve(|pair| f64::from(self.sums[pair * width + x]));
             for (unknown, s) in solution.iter().enumerate() {
-                #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
-                let s = *s as f32;
-                self.solutions[unknown * width + x] = s;
+                self.solutions[unknown * width + x] = narrow(*s);
             }
         }
     }

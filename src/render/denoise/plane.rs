@@ -1,5 +1,7 @@
 //! One number per pixel of a picture.
 
+use super::record::narrow;
+
 /// Numbers row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Plane {
@@ -10,8 +12,7 @@ pub(super) struct Plane {
 impl Plane {
     /// Of a number for each column and row.
     pub(super) fn of(width: usize, height: usize, number: impl Fn(usize, usize) -> f64) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
-        let values = (0..width * height).map(|i| number(i % width, i / width) as f32).collect();
+        let values = (0..width * height).map(|i| narrow(number(i % width, i / width))).collect();
         Self { width, values }
     }
 

@@ -5,13 +5,14 @@ use glam::DVec3;
 use crate::render::integrator::path::Sight;
 use crate::render::noise::Gathered;
 
-/// Numbers that a [`Sight`] has.
+/// Numbers that a [`Sight`] has: the place from the camera (x, y, z in m), the normal (x, y, z), the reflectance (0 to 1) and the emission in
+/// W/(m²·sr·nm).
 pub const FEATURES: usize = 8;
 /// The halves of the samples.
 pub const HALVES: usize = 2;
 
-/// Where things stand in a record: for each half the bands, the features, the variance of the luminance's mean in (cd/m²)² and the number of
-/// samples; then the features as rays see them that only look, and the number of these. Each for all pixels of the row.
+/// Where things stand in a record: for each half the bands in W/(m²·sr·nm), the features, the variance of the luminance's mean in (cd/m²)² and the number of
+/// samples; then the features as rays see them that only look, and the number of these. Each for all pixels of the row, from the left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     /// Bands of the scene.

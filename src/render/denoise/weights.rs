@@ -29,14 +29,15 @@ impl Guide {
         let (width, height) = (self.luminance.width(), self.luminance.height());
         weights.fill(0.0);
         let Some(columns) = overlap(width, dx) else { return };
-        let Some(other) = y.checked_add_signed(dy).filter(|row| *row < height) else { return };
+        if y.checked_add_signed(dy).is_none_or(|row| row >= height) {
+            return;
+        }
         scratch.fill(0.0);
         let mut rows = 0.0;
         for row in y.saturating_sub(PATCH)..(y + PATCH + 1).min(height) {
             let Some(beside) = row.checked_add_signed(dy).filter(|row| *row < height) else { continue };
-            debug_assert!(other.abs_diff(beside) <= PATCH);
             rows += 1.0;
-            let shifted = columns.start.wrapping_add_signed(dx)..columns.end.wrapping_add_signed(dx);
+            let shifted = columns.start.strict_add_signed(dx)..columns.end.strict_add_signed(dx);
             let here = self.luminance.row(row)[columns.clone()].iter().zip(&self.variance.row(row)[columns.clone()]);
             let there = self.luminance.row(beside)[shifted.clone()].iter().zip(&self.variance.row(beside)[shifted]);
             for (distance, ((a, va), (b, vb))) in scratch[columns.clone()].iter_mut().zip(here.zip(there)) {
