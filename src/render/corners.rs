@@ -1,6 +1,7 @@
 //! The corners of many triangles, each with its own, one triangle after the other: what a search reads lies together.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 /// The corners of triangles, m.
 #[derive(Debug)]
@@ -17,7 +18,7 @@ impl Corners {
     /// # Panics
     /// Where a corner is not there.
     pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Self {
-        let named = triangles.iter().map(|names| names.map(|i| positions[i as usize]));
+        let named = triangles.par_iter().map(|names| names.map(|i| positions[i as usize]));
         let is_single = |p: DVec3| p.as_vec3().as_dvec3() == p;
         if named.clone().all(|corners| corners.into_iter().all(is_single)) {
             Self::Single(named.map(|corners| corners.map(|p| p.as_vec3())).collect())

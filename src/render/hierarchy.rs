@@ -8,6 +8,7 @@
 //! (2018); H. Ylitie, T. Karras, S. Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017; I. Wald, C. Benthin, S. Boulos, *Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs*,
 //! RT 2008.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use glam::Vec3A;
@@ -16,6 +17,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::PlocBuilder;
 use obvhs::{Boundable, BvhBuildParams};
+use rayon::prelude::*;
 use smallvec::SmallVec;
 use wide::{CmpLe, f32x8, i32x8, u8x16, u16x8};
 
@@ -27,6 +29,8 @@ const IS_LEAF: u32 = 1 << 31;
 const STEPS: f32 = 254.0;
 /// Open children that a search holds without allocating; only chains of boxes one inside the other need more.
 const OPEN: usize = 96;
+/// Parts that are drawn together at the same time.
+const PARTS: usize = 64;
 
 /// Boxes in an order of its own: each has a place.
 #[derive(Debug, Default)]
@@ -68,7 +72,7 @@ impl Boundable for Leaf {
 
 impl Hierarchy {
     /// The hierarchy of some boxes (least and greatest corners), at most 2²⁸, and the number of the box at each place.
-    pub(super) fn new(boxes: impl Iterator<Item = (Vec3A, Vec3A)>) -> (Self, Vec<u32>) {
+    pub(super) fn new(boxes: impl IndexedParallelIterator<Item = (Vec3A, Vec3A)>) -> (Self, Vec<u32>) {
         let leaves: Vec<Leaf> = boxes.map(|(min, max)| Leaf(Aabb::new(min, max))).collect();
         if leaves.is_empty() {
             return (Self::default(), Vec::new());
@@ -90,26 +94,15 @@ impl Hierarchy {
 
     /// Draws the nodes of a binary hierarchy together.
     fn of(binary: &Bvh2) -> (Self, Vec<u32>) {
-        let (mut nodes, mut numbers) = (vec![Node::EMPTY], Vec::with_capacity(binary.primitive_indices.len()));
-        // Nodes to be filled, and the binary nodes whose descendants are to be their children.
-        let mut open = vec![(0, 0)];
-        while let Some((node, of)) = open.pop() {
-            let children = descendants(binary, of);
-            let mut filled = Node::around(binary, of, &children);
-            for (content, &child) in filled.children.iter_mut().zip(&children) {
-                #[expect(clippy::cast_possible_truncation, reason = "fewer than 2²⁸ boxes and so nodes")]
-                if let Some(held) = few(binary, child) {
-                    *content = IS_LEAF | ((numbers.len() as u32) << 3) | held.len() as u32;
-                    numbers.extend(held);
-                } else {
-                    *content = nodes.len() as u32;
-                    open.push((nodes.len(), child));
-                    nodes.push(Node::EMPTY);
-                }
-            }
-            nodes[node] = filled;
+        let (mut whole, mut open) = (Part::new(), VecDeque::from([(0, 0)]));
+        while open.len() < PARTS
+            && let Some((node, of)) = open.pop_front()
+        {
+            whole.fill(binary, node, of, |child| open.push_back(child));
         }
-        (Self { nodes }, numbers)
+        let parts: Vec<_> = open.par_iter().map(|&(_, of)| Part::below(binary, of)).collect();
+        open.into_iter().zip(parts).for_each(|((node, _), part)| whole.graft(node, part));
+        (Self { nodes: whole.nodes }, whole.numbers)
     }
 
     /// Calls `test` with the places of boxes that the line may meet before `limit`, roughly from near to far; `test` returns a nearer
@@ -205,7 +198,7 @@ impl Node {
     const EMPTY: Self = Self { origin: [0.0; 3], step: [0.0; 3], planes: [u8x16::ZERO; 3], children: [0; 8], there: 0 };
 
     /// The node of a binary node, with the boxes of some of its descendants and nothing in them.
-    fn around(binary: &Bvh2, of: usize, children: &[usize]) -> Self {
+    fn around(binary: &Bvh2, of: usize, children: &[Descendant]) -> Self {
         let bounds = |node: usize| {
             let b = binary.nodes[node].aabb();
             [b.min.to_array(), b.max.to_array()]
@@ -215,8 +208,8 @@ impl Node {
         for axis in 0..3 {
             let step = (end[axis] - origin[axis]) / STEPS;
             node.step[axis] = step;
-            for (slot, &child) in children.iter().enumerate() {
-                let [min, max] = bounds(child).map(|corner| (corner[axis] - origin[axis]) / step);
+            for (slot, child) in children.iter().enumerate() {
+                let [min, max] = bounds(child.node).map(|corner| (corner[axis] - origin[axis]) / step);
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast that saturates")]
                 let (min, max) = (min.floor() as u8, max.ceil() as u8);
                 node.planes[axis].as_array_mut()[slot] = min;
@@ -246,27 +239,89 @@ impl Node {
     }
 }
 
-/// Up to eight nodes below a binary node that together hold all that it holds. Opened are those that hold too much for a leaf, then,
-/// while there is room, any; the largest first.
-fn descendants(binary: &Bvh2, of: usize) -> SmallVec<[usize; 8]> {
-    let mut children: SmallVec<[usize; 8]> = SmallVec::new();
-    children.push(of);
-    while children.len() < 8 {
-        let largest = (children.iter().enumerate())
-            .filter(|(_, child)| !binary.nodes[**child].is_leaf())
-            .map(|(place, &child)| (place, child, few(binary, child).is_none(), area(binary, child)))
-            .max_by(|a, b| a.2.cmp(&b.2).then(a.3.total_cmp(&b.3)));
-        let Some((place, child, ..)) = largest else { break };
-        let first = binary.nodes[child].first_index as usize;
-        children[place] = first;
-        children.push(first + 1);
-    }
-    children
+/// A part of a hierarchy: its nodes, of which the first holds all others, and the numbers of the boxes at its places, both counted from 0.
+struct Part {
+    nodes: Vec<Node>,
+    numbers: Vec<u32>,
 }
 
-/// Half the surface of a node of the binary hierarchy.
-fn area(binary: &Bvh2, node: usize) -> f32 {
-    binary.nodes[node].aabb().half_area()
+impl Part {
+    fn new() -> Self {
+        Self { nodes: vec![Node::EMPTY], numbers: Vec::new() }
+    }
+
+    /// All that a binary node holds.
+    fn below(binary: &Bvh2, of: usize) -> Self {
+        let (mut part, mut open) = (Self::new(), vec![(0, of)]);
+        while let Some((node, of)) = open.pop() {
+            part.fill(binary, node, of, |child| open.push(child));
+        }
+        part
+    }
+
+    /// Fills a node with what a binary node holds; `open` gets the nodes that are to be filled next and the binary ones that they are of.
+    fn fill(&mut self, binary: &Bvh2, node: usize, of: usize, mut open: impl FnMut((usize, usize))) {
+        let children = descendants(binary, of);
+        let mut filled = Node::around(binary, of, &children);
+        for (content, child) in filled.children.iter_mut().zip(&children) {
+            #[expect(clippy::cast_possible_truncation, reason = "fewer than 2²⁸ boxes and so nodes")]
+            if let Some(held) = &child.few {
+                *content = IS_LEAF | ((self.numbers.len() as u32) << 3) | held.len() as u32;
+                self.numbers.extend_from_slice(held);
+            } else {
+                *content = self.nodes.len() as u32;
+                open((self.nodes.len(), child.node));
+                self.nodes.push(Node::EMPTY);
+            }
+        }
+        self.nodes[node] = filled;
+    }
+
+    /// Puts a part in the place of a node.
+    fn graft(&mut self, node: usize, part: Self) {
+        #[expect(clippy::cast_possible_truncation, reason = "fewer than 2²⁸ boxes and so nodes")]
+        let (nodes, places) = (self.nodes.len() as u32 - 1, (self.numbers.len() as u32) << 3);
+        let mut moved = part.nodes.into_iter().map(|mut node| {
+            let there = node.there.count_ones() as usize;
+            node.children[..there].iter_mut().for_each(|c| *c += if *c & IS_LEAF == 0 { nodes } else { places });
+            node
+        });
+        self.nodes[node] = moved.next().expect("a part has a first node");
+        self.nodes.extend(moved);
+        self.numbers.extend(part.numbers);
+    }
+}
+
+/// A node of the binary hierarchy that is to be a child.
+struct Descendant {
+    node: usize,
+    /// What it holds, where that is a leaf's.
+    few: Option<SmallVec<[u32; LEAF]>>,
+    /// Half its surface.
+    area: f32,
+}
+
+impl Descendant {
+    fn new(binary: &Bvh2, node: usize) -> Self {
+        Self { node, few: few(binary, node), area: binary.nodes[node].aabb().half_area() }
+    }
+}
+
+/// Up to eight nodes below a binary node that together hold all that it holds. Opened are those that hold too much for a leaf, then,
+/// while there is room, any; the largest first.
+fn descendants(binary: &Bvh2, of: usize) -> SmallVec<[Descendant; 8]> {
+    let mut children = SmallVec::<[Descendant; 8]>::new();
+    children.push(Descendant::new(binary, of));
+    while children.len() < 8 {
+        let largest = (children.iter().enumerate())
+            .filter(|(_, child)| !binary.nodes[child.node].is_leaf())
+            .max_by(|(_, a), (_, b)| a.few.is_none().cmp(&b.few.is_none()).then(a.area.total_cmp(&b.area)));
+        let Some((place, child)) = largest else { break };
+        let first = binary.nodes[child.node].first_index as usize;
+        children[place] = Descendant::new(binary, first);
+        children.push(Descendant::new(binary, first + 1));
+    }
+    children
 }
 
 /// The boxes below a node where they are few enough for a leaf.

@@ -4,6 +4,7 @@
 //! final size while it is built, so large meshes are first cut into blocks that have trees of their own.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::corners::Corners;
 use super::ray::{Crossing, Ray};
@@ -118,8 +119,10 @@ impl Mesh {
             let across = cross(b - a, c - a);
             across.is_finite() && across != DVec3::ZERO
         };
-        let first_skipped = data.triangles.iter().position(|names| !spans_area(names));
-        data.triangles.retain(spans_area);
+        let first_skipped = data.triangles.par_iter().position_first(|names| !spans_area(names));
+        if first_skipped.is_some() {
+            data.triangles.retain(spans_area);
+        }
         let skipped = given - data.triangles.len();
         let of = |names: &[u32; 3]| Bounds::of(names.map(|corner| positions[corner as usize]));
         let mut blocks = Vec::new();
@@ -128,7 +131,7 @@ impl Mesh {
         open.push(0..data.triangles.len());
         while let Some(range) = open.pop() {
             let triangles = &mut data.triangles[range.clone()];
-            let bounds = triangles.iter().map(of).fold(Bounds::EMPTY, Bounds::union);
+            let bounds = triangles.par_iter().map(of).reduce(|| Bounds::EMPTY, Bounds::union);
             if triangles.len() > most {
                 // Halved across its longest side.
                 let axis = (bounds.max - bounds.min).max_position();
@@ -137,8 +140,8 @@ impl Mesh {
                 triangles.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)));
                 open.extend([range.start + half..range.end, range.start..range.start + half]);
             } else if !triangles.is_empty() {
-                let mut tree = Tree::new(&triangles.iter().map(of).collect::<Vec<_>>());
-                let renumbered: Vec<_> = tree.renumber().into_iter().map(|i| triangles[i as usize]).collect();
+                let mut tree = Tree::new(&triangles.par_iter().map(of).collect::<Vec<_>>());
+                let renumbered: Vec<_> = tree.renumber().into_par_iter().map(|i| triangles[i as usize]).collect();
                 triangles.copy_from_slice(&renumbered);
                 blocks.push(Block { first: range.start, tree });
                 boxes.push(bounds);

@@ -9,6 +9,7 @@
 //! - The ray starts a little before its origin, so that boxes about the origin lie ahead.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::hierarchy::{Hierarchy, Line};
 use super::shape::Bounds;
@@ -35,7 +36,7 @@ impl Tree {
     /// The hierarchy of the boxes given, all finite; their numbers are their places in the list.
     #[must_use]
     pub fn new(boxes: &[Bounds]) -> Self {
-        let all = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
+        let all = boxes.par_iter().copied().reduce(|| Bounds::EMPTY, Bounds::union);
         if boxes.is_empty() {
             return Self {
                 hierarchy: Hierarchy::default(),
@@ -49,7 +50,7 @@ impl Tree {
         let centre = 0.5 * all.min + 0.5 * all.max;
         let half = (0.5 * all.max - 0.5 * all.min).max_element();
         let scale = if half > 0.0 { 1.0 / half } else { 1.0 };
-        let (hierarchy, numbers) = Hierarchy::new(boxes.iter().map(|b| {
+        let (hierarchy, numbers) = Hierarchy::new(boxes.par_iter().map(|b| {
             let (min, max) = ((b.min - centre) * scale, (b.max - centre) * scale);
             ((min - PAD).as_vec3a(), (max + PAD).as_vec3a())
         }));
