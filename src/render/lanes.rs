@@ -26,9 +26,38 @@ pub fn weighted(values: &[f64], weights: &[f64]) -> f64 {
     lanes.iter().sum::<f64>() + rest
 }
 
+/// Adds a row to another, which is no longer. As the next one a loop over places: chains of iterators are not always inlined, and only what is inlined is
+/// compiled for the instruction set that a dispatch finds.
+#[inline(always)]
+pub fn add(sums: &mut [f32], a: &[f32]) {
+    let a = &a[..sums.len()];
+    for (i, sum) in sums.iter_mut().enumerate() {
+        *sum += a[i];
+    }
+}
+
+/// Multiplies a row by another, which is no shorter.
+#[inline(always)]
+pub fn multiply(row: &mut [f32], by: &[f32]) {
+    let by = &by[..row.len()];
+    for (i, value) in row.iter_mut().enumerate() {
+        *value *= by[i];
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_are_as_long_as_the_one_that_changes() {
+        let (a, b) = ([1.0, 2.0, 3.0], [10.0, 20.0, 30.0]);
+        let mut row = [1.0, 1.0];
+        add(&mut row, &a);
+        assert_eq!(row, [2.0, 3.0]);
+        multiply(&mut row, &b);
+        assert_eq!(row, [20.0, 60.0]);
+    }
 
     #[test]
     fn all_lanes_and_the_rest_count() {

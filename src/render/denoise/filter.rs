@@ -1,71 +1,48 @@
 //! A row of a picture, filtered.
 
-use std::ops::Range;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::fit::Fits;
 use super::record::{FEATURES, narrow};
 use super::rows::Rows;
-use super::weights::{Guide, overlap};
+use super::tile::{NEIGHBOURS, TILE, Tile, Window, neighbour};
+use super::weights::{Guide, overlap, scratch};
+use crate::render::lanes::multiply;
 
-/// Pixels to each side that a pixel borrows from.
-const REACH: isize = 5;
-
-/// What filtering a row needs.
+/// What filtering needs.
 pub(super) struct Filter {
-    fits: Fits,
-    scratch: Vec<f32>,
-    /// Of each neighbour, for all pixels of the row.
+    /// Of each neighbour, for all pixels of a row and on to the end of its last tile; 0 where there is none.
     weights: Vec<Vec<f32>>,
-    differences: [Vec<f32>; FEATURES],
-    /// What the camera saw, by all samples.
-    seen: [Vec<f32>; FEATURES],
+    scratch: Vec<f32>,
+    /// What the camera saw at the pixels of a tile, by all samples.
+    seen: [Tile; FEATURES],
+    /// And about it, by those of a half.
+    features: [Window; FEATURES],
+    fits: Fits,
+    /// What each neighbour counts.
+    kernels: Vec<Tile>,
+    samples: Window,
 }
 
 impl Filter {
     pub(super) fn new(width: usize) -> Self {
-        let row = || vec![0.0; width];
-        let neighbours = (2 * REACH + 1).unsigned_abs().pow(2);
         Self {
-            fits: Fits::new(width),
-            scratch: row(),
-            weights: (0..neighbours).map(|_| row()).collect(),
-            differences: std::array::from_fn(|_| row()),
-            seen: std::array::from_fn(|_| row()),
+            weights: vec![vec![0.0; width.next_multiple_of(TILE)]; NEIGHBOURS],
+            scratch: vec![0.0; scratch(width)],
+            seen: [[0.0; TILE]; FEATURES],
+            features: std::array::from_fn(|_| Window::default()),
+            fits: Fits::default(),
+            kernels: vec![[0.0; TILE]; NEIGHBOURS],
+            samples: Window::default(),
         }
     }
 
     /// The bands of a half of row y, one behind the other.
     pub(super) fn row(&mut self, records: &Rows<'_>, guide: &Guide, half: usize, y: usize) -> Vec<f32> {
         let (width, layout) = (records.width, records.layout);
-        for (feature, seen) in self.seen.iter_mut().enumerate() {
-            for (x, seen) in seen.iter_mut().enumerate() {
-                *seen = narrow(records.seen(x, y, feature));
-            }
-        }
-        self.fits.clear();
-        for (neighbour, place) in neighbours().enumerate() {
-            guide.weigh(y, place, &mut self.scratch, &mut self.weights[neighbour]);
-            let Some(shift) = Shift::of(records, y, place) else { continue };
-            let counts = &records.channel(shift.row, layout.count(half))[shift.there.clone()];
-            let weights = self.weights[neighbour][shift.columns.clone()].iter_mut();
-            weights.zip(counts).for_each(|(w, count)| *w *= count);
-            self.differ(records, half, &shift);
-            let weights = &self.weights[neighbour][shift.columns.clone()];
-            self.fits.add(shift.columns.start, weights, &self.differences);
-        }
-        self.fits.solve();
         let mut bands = vec![0.0; layout.bands * width];
-        for (neighbour, place) in neighbours().enumerate() {
-            let Some(shift) = Shift::of(records, y, place) else { continue };
-            self.differ(records, half, &shift);
-            let weights = &self.weights[neighbour][shift.columns.clone()];
-            self.fits.apply(shift.columns.start, weights, &self.differences, &mut self.scratch);
-            for (band, sums) in bands.chunks_exact_mut(width).enumerate() {
-                let samples = &records.channel(shift.row, layout.band(half) + band)[shift.there.clone()];
-                let sums = sums[shift.columns.clone()].iter_mut();
-                sums.zip(self.scratch.iter().zip(samples)).for_each(|(sum, (k, sample))| *sum += k * sample);
-            }
-        }
+        // The same operations in the same order with any instruction set.
+        Arch::new().dispatch(Filtering { filter: self, records, guide, half, y, bands: &mut bands });
         for (band, values) in bands.chunks_exact_mut(width).enumerate() {
             for (x, value) in values.iter_mut().enumerate().filter(|(_, value)| **value < 0.0) {
                 *value = self.average(records, layout.band(half) + band, x, y);
@@ -76,7 +53,8 @@ impl Filter {
 
     /// The weighted mean of a pixel's neighbours, for a fit that went below 0.
     fn average(&self, records: &Rows<'_>, channel: usize, x: usize, y: usize) -> f32 {
-        let own = neighbours().zip(&self.weights).filter_map(|([dx, dy], weights)| {
+        let own = self.weights.iter().enumerate().filter_map(|(number, weights)| {
+            let [dx, dy] = neighbour(number);
             Some((x.checked_add_signed(dx)?, y.checked_add_signed(dy)?, f64::from(weights[x]))).filter(|n| n.2 > 0.0)
         });
         let (sum, total) = own.fold((0.0, 0.0), |(sum, total), (x, y, weight)| {
@@ -84,34 +62,109 @@ impl Filter {
         });
         narrow(sum / total)
     }
+}
 
-    /// Writes by how much the features of a half differ from those of the pixels of the row.
-    fn differ(&mut self, records: &Rows<'_>, half: usize, shift: &Shift) {
-        for (feature, (differences, seen)) in self.differences.iter_mut().zip(&self.seen).enumerate() {
-            let there = &records.channel(shift.row, records.layout.feature(half) + feature)[shift.there.clone()];
-            differences.clear();
-            differences.extend(there.iter().zip(&seen[shift.columns.clone()]).map(|(there, here)| there - here));
+/// A row that is being filtered. (No closures: only what is inlined is compiled for the instruction set at hand.)
+struct Filtering<'a> {
+    filter: &'a mut Filter,
+    records: &'a Rows<'a>,
+    guide: &'a Guide,
+    half: usize,
+    y: usize,
+    /// One behind the other.
+    bands: &'a mut [f32],
+}
+
+impl NullaryFnOnce for Filtering<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        self.weigh();
+        let mut first = 0;
+        while first < self.records.width {
+            self.fit(first);
+            self.apply(first);
+            first += TILE;
         }
     }
 }
 
-/// All neighbours of a pixel and itself: columns and rows away.
-fn neighbours() -> impl Iterator<Item = [isize; 2]> + Clone {
-    (-REACH..=REACH).flat_map(|dy| (-REACH..=REACH).map(move |dx| [dx, dy]))
-}
-
-/// The pixels of a row that have a certain neighbour, and these.
-struct Shift {
-    columns: Range<usize>,
-    there: Range<usize>,
-    row: usize,
-}
-
-impl Shift {
-    fn of(records: &Rows<'_>, y: usize, [dx, dy]: [isize; 2]) -> Option<Self> {
-        let row = y.checked_add_signed(dy).filter(|row| *row < records.rows.len())?;
-        let columns = overlap(records.width, dx)?;
-        let there = columns.start.strict_add_signed(dx)..columns.end.strict_add_signed(dx);
-        Some(Self { columns, there, row })
+impl Filtering<'_> {
+    /// Weighs each neighbour of all pixels of the row.
+    #[inline(always)]
+    fn weigh(&mut self) {
+        let (filter, records) = (&mut *self.filter, self.records);
+        for (number, weights) in filter.weights.iter_mut().enumerate() {
+            let [dx, dy] = neighbour(number);
+            let weights = &mut weights[..records.width];
+            self.guide.weigh(self.y, [dx, dy], &mut filter.scratch, weights);
+            let beside = self.y.checked_add_signed(dy).filter(|row| *row < records.rows.len());
+            if let Some((row, columns)) = beside.zip(overlap(records.width, dx)) {
+                let counts = records.channel(row, records.layout.count(self.half));
+                let counts = &counts[columns.start.strict_add_signed(dx)..];
+                multiply(&mut weights[columns], counts);
+            }
+        }
     }
+
+    /// Finds what each neighbour counts, for the tile that begins at column `first`.
+    #[inline(always)]
+    fn fit(&mut self, first: usize) {
+        let (filter, records) = (&mut *self.filter, self.records);
+        let own = (records.width - first).min(TILE);
+        for (feature, seen) in filter.seen.iter_mut().enumerate() {
+            for (i, seen) in seen[..own].iter_mut().enumerate() {
+                *seen = narrow(records.seen(first + i, self.y, feature));
+            }
+            filter.features[feature].load(records, records.layout.feature(self.half) + feature, first, self.y);
+        }
+        filter.fits.clear();
+        for number in 0..NEIGHBOURS {
+            let differences = differences(&filter.features, &filter.seen, number);
+            filter.fits.add(tile(&filter.weights[number], first), &differences);
+        }
+        filter.fits.solve();
+        for (number, kernel) in filter.kernels.iter_mut().enumerate() {
+            let differences = differences(&filter.features, &filter.seen, number);
+            *kernel = filter.fits.kernel(tile(&filter.weights[number], first), &differences);
+        }
+    }
+
+    /// Adds up the bands of the tile that begins at column `first`.
+    #[inline(always)]
+    fn apply(&mut self, first: usize) {
+        let (filter, records) = (&mut *self.filter, self.records);
+        let own = (records.width - first).min(TILE);
+        for (band, out) in self.bands.chunks_exact_mut(records.width).enumerate() {
+            filter.samples.load(records, records.layout.band(self.half) + band, first, self.y);
+            let mut sums = [0.0; TILE];
+            for (number, kernel) in filter.kernels.iter().enumerate() {
+                let samples = filter.samples.of(number);
+                for i in 0..TILE {
+                    sums[i] += kernel[i] * samples[i];
+                }
+            }
+            out[first..][..own].copy_from_slice(&sums[..own]);
+        }
+    }
+}
+
+/// By how much the features of a neighbour differ from those of the pixels.
+#[inline(always)]
+fn differences(features: &[Window; FEATURES], seen: &[Tile; FEATURES], number: usize) -> [Tile; FEATURES] {
+    let mut differences = [[0.0; TILE]; FEATURES];
+    for feature in 0..FEATURES {
+        let there = features[feature].of(number);
+        for i in 0..TILE {
+            differences[feature][i] = there[i] - seen[feature][i];
+        }
+    }
+    differences
+}
+
+/// The numbers of a row from a column on.
+#[inline(always)]
+fn tile(row: &[f32], first: usize) -> &Tile {
+    row[first..].first_chunk().expect("rows end where tiles end")
 }

@@ -13,77 +13,91 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::record::{FEATURES, narrow};
+use super::tile::{TILE, Tile};
 
 /// Unknowns: the value and its slopes.
 const UNKNOWNS: usize = FEATURES + 1;
 /// λ.
 const RIDGE: f64 = 1e-3;
 
-/// Sums of the fits of a row of pixels.
-pub(super) struct Fits {
-    width: usize,
-    /// The lower half of M, row by row, each for all pixels: Σ w x_j x_k.
-    sums: Vec<f32>,
-    /// s, unknown by unknown.
-    solutions: Vec<f32>,
-}
-
 /// Sums that a pixel has.
 const SUMS: usize = UNKNOWNS * (UNKNOWNS + 1) / 2;
 
-impl Fits {
-    pub(super) fn new(width: usize) -> Self {
-        Self { width, sums: vec![0.0; SUMS * width], solutions: vec![0.0; UNKNOWNS * width] }
-    }
+/// The fits of a tile.
+pub(super) struct Fits {
+    /// The lower half of M, row by row: Σ w x_j x_k.
+    sums: [Tile; SUMS],
+    /// s.
+    solutions: [Tile; UNKNOWNS],
+}
 
+impl Default for Fits {
+    fn default() -> Self {
+        Self { sums: [[0.0; TILE]; SUMS], solutions: [[0.0; TILE]; UNKNOWNS] }
+    }
+}
+
+impl Fits {
     /// Forgets all neighbours.
     pub(super) fn clear(&mut self) {
-        self.sums.fill(0.0);
+        self.sums = [[0.0; TILE]; SUMS];
     }
 
-    /// Adds neighbours of the pixels from `first` on: their weights and, feature by feature, by how much they differ.
-    pub(super) fn add(&mut self, first: usize, weights: &[f32], differences: &[Vec<f32>; FEATURES]) {
-        let mut sums = self.sums.chunks_exact_mut(self.width).map(|sums| &mut sums[first..][..weights.len()]);
-        let mut next = || sums.next().expect("as many as there are pairs");
-        next().iter_mut().zip(weights).for_each(|(sum, w)| *sum += w);
-        for (j, a) in differences.iter().enumerate() {
-            next().iter_mut().zip(weights.iter().zip(a)).for_each(|(sum, (w, a))| *sum += w * a);
-            for b in &differences[..=j] {
-                next()
-                    .iter_mut()
-                    .zip(weights.iter().zip(a.iter().zip(b)))
-                    .for_each(|(sum, (w, (a, b)))| *sum += w * a * b);
+    /// Adds a neighbour of each pixel: its weight and, feature by feature, by how much it differs.
+    #[inline(always)]
+    pub(super) fn add(&mut self, weights: &Tile, differences: &[Tile; FEATURES]) {
+        let [first, ..] = &mut self.sums;
+        for i in 0..TILE {
+            first[i] += weights[i];
+        }
+        for j in 0..FEATURES {
+            let sums = &mut self.sums[index(j + 1, 0)..];
+            let mut weighted = [0.0; TILE];
+            for i in 0..TILE {
+                weighted[i] = weights[i] * differences[j][i];
+                sums[0][i] += weighted[i];
+            }
+            for k in 0..=j {
+                for i in 0..TILE {
+                    sums[k + 1][i] += weighted[i] * differences[k][i];
+                }
             }
         }
     }
 
     /// Solves them.
+    #[inline(never)]
     pub(super) fn solve(&mut self) {
-        let width = self.width;
-        for x in 0..width {
-            let solution = solve(|pair| f64::from(self.sums[pair * width + x]));
-            for (unknown, s) in solution.iter().enumerate() {
-                self.solutions[unknown * width + x] = narrow(*s);
-            }
+        for i in 0..TILE {
+            let solution = solve(|pair| f64::from(self.sums[pair][i]));
+            self.solutions.iter_mut().zip(solution).for_each(|(all, s)| all[i] = narrow(s));
         }
     }
 
-    /// Writes κ of neighbours of the pixels from `first` on, given as to [`Fits::add`].
-    pub(super) fn apply(&self, first: usize, weights: &[f32], differences: &[Vec<f32>; FEATURES], kernel: &mut [f32]) {
-        let kernel = &mut kernel[..weights.len()];
-        let mut solutions = self.solutions.chunks_exact(self.width).map(|s| &s[first..][..weights.len()]);
-        let mut next = || solutions.next().expect("as many as unknowns");
-        kernel.copy_from_slice(next());
-        for difference in differences {
-            kernel.iter_mut().zip(next().iter().zip(difference)).for_each(|(sum, (s, d))| *sum += s * d);
+    /// κ of a neighbour, given as to [`Fits::add`].
+    #[inline(always)]
+    pub(super) fn kernel(&self, weights: &Tile, differences: &[Tile; FEATURES]) -> Tile {
+        let [mut kernel, slopes @ ..] = self.solutions;
+        for k in 0..FEATURES {
+            for i in 0..TILE {
+                kernel[i] += slopes[k][i] * differences[k][i];
+            }
         }
-        kernel.iter_mut().zip(weights).for_each(|(k, w)| *k *= w);
+        for i in 0..TILE {
+            kernel[i] *= weights[i];
+        }
+        kernel
     }
+}
+
+/// Where the sum of a pair of unknowns stands, j ≥ k.
+#[inline(always)]
+fn index(j: usize, k: usize) -> usize {
+    j * (j + 1) / 2 + k
 }
 
 /// s of a pixel, given the sums; 0 without neighbours.
 fn solve(sum: impl Fn(usize) -> f64) -> [f64; UNKNOWNS] {
-    let index = |j: usize, k: usize| j * (j + 1) / 2 + k;
     let mut solution = [0.0; UNKNOWNS];
     let total = sum(0);
     if total <= 0.0 {

@@ -20,7 +20,7 @@
 //! | `filter` | a row of pixels, filtered |
 //! | `weights` | how alike two pixels are |
 //! | `fit` | what each neighbour counts |
-//! | `plane` | one number per pixel |
+//! | `plane`, `tile` | one number per pixel; some pixels of a row and those about them |
 
 use rayon::prelude::*;
 
@@ -40,6 +40,7 @@ pub mod record;
 mod rows;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod weights;
 
 /// The share of the mean luminance that errors of dark pixels are told relative to.
@@ -92,41 +93,46 @@ pub fn denoise(description: Description, tristimulus: &[[f64; 3]], rows: &[Vec<f
             |filter, y| [0, 1].map(|half| filter.row(&records, &guides[1 - half], half, y)),
         )
         .collect();
-    let price = price(&records, &halves, &filtered, &luminous);
+    let shown = [0, 1].map(|half| {
+        Plane::sums(width, rows.len(), |y| luminous.iter().copied().zip(filtered[y][half].chunks_exact(width)))
+    });
+    let price = price(&records, &halves, &shown);
     let rows = filtered.into_par_iter().enumerate();
     let rows = rows.map(|(y, halves)| joined(&records, y, &halves, tristimulus)).collect();
     Denoised { description, rows, price }
 }
 
-/// The errors of a picture, by comparing halves.
-fn price(records: &Rows<'_>, halves: &[Plane; HALVES], filtered: &[[Vec<f32>; HALVES]], luminous: &[f64]) -> Price {
+/// The errors of a picture, by comparing halves: their luminance as it was sampled and as it was filtered.
+fn price(records: &Rows<'_>, sampled: &[Plane; HALVES], filtered: &[Plane; HALVES]) -> Price {
     let (width, height) = (records.width, records.rows.len());
-    let of = |x: usize, y: usize, half: usize| -> f64 {
-        let bands = filtered[y][half].chunks_exact(width).map(|band| f64::from(band[x]));
-        bands.zip(luminous).map(|(b, l)| b * l).sum()
-    };
-    let both =
-        Plane::of(width, height, |x, y| [0, 1].map(|half| records.share(x, y, half) * of(x, y, half)).iter().sum());
-    let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let both = Plane::of(width, height, |x, y| {
+        [0, 1].map(|half| records.share(x, y, half) * filtered[half].at(x, y)).iter().sum()
+    });
     let pixels = (width * height) as f64;
-    let dark = DARK * places().map(|(x, y)| both.at(x, y)).sum::<f64>() / pixels;
-    let (mut before, mut after) = (0.0, 0.0);
-    for (x, y) in places() {
-        let relative_to = both.at(x, y).powi(2) + dark * dark;
-        if relative_to == 0.0 {
-            continue;
+    let total: f64 = (0..height).flat_map(|y| both.row(y)).map(|l| f64::from(*l)).sum();
+    let dark = DARK * total / pixels;
+    let of_row = |y: usize| {
+        let (mut before, mut after) = (0.0, 0.0);
+        for x in 0..width {
+            let relative_to = both.at(x, y).powi(2) + dark * dark;
+            if relative_to == 0.0 {
+                continue;
+            }
+            let samples = [0, 1].map(|half| sampled[half].at(x, y));
+            let shares = [0, 1].map(|half| records.share(x, y, half));
+            // σ² of a sample over the number of both halves, times their shares, is on average:
+            let square = (samples[0] - samples[1]).powi(2);
+            before += square * shares[0] * shares[1] / relative_to;
+            for half in [0, 1] {
+                let off = (filtered[half].at(x, y) - samples[1 - half]).powi(2) - square * shares[half];
+                after += 0.5 * off / relative_to;
+            }
         }
-        let sampled = [0, 1].map(|half| halves[half].at(x, y));
-        let shares = [0, 1].map(|half| records.share(x, y, half));
-        // σ² of a sample over the number of both halves, times their shares, is on average:
-        let square = (sampled[0] - sampled[1]).powi(2);
-        before += square * shares[0] * shares[1] / relative_to;
-        for half in [0, 1] {
-            let other = 1 - half;
-            let off = (of(x, y, half) - sampled[other]).powi(2) - square * shares[half];
-            after += 0.5 * off / relative_to;
-        }
-    }
+        [before, after]
+    };
+    // Added row by row in their order: any number of threads gives the same bits.
+    let rows: Vec<[f64; 2]> = (0..height).into_par_iter().map(of_row).collect();
+    let [before, after] = rows.iter().fold([0.0; 2], |sum, row| [sum[0] + row[0], sum[1] + row[1]]);
     Price { before: (before / pixels).sqrt(), after: (after / pixels).max(0.0).sqrt() }
 }
 
@@ -134,17 +140,19 @@ fn price(records: &Rows<'_>, halves: &[Plane; HALVES], filtered: &[[Vec<f32>; HA
 fn joined(records: &Rows<'_>, y: usize, halves: &[Vec<f32>; HALVES], tristimulus: &[[f64; 3]]) -> Vec<f32> {
     let (width, bands) = (records.width, tristimulus.len());
     let mut row = vec![0.0; (bands + 3) * width];
-    for x in 0..width {
-        let shares = [0, 1].map(|half| records.share(x, y, half));
-        let mut xyz = [0.0; 3];
-        for (band, by) in tristimulus.iter().enumerate() {
-            let place = band * width + x;
-            let value: f64 = [0, 1].map(|half| shares[half] * f64::from(halves[half][place])).iter().sum();
-            xyz.iter_mut().zip(by).for_each(|(sum, by)| *sum += value * by);
-            row[place] = narrow(value);
+    let shares: Vec<[f64; 2]> = (0..width).map(|x| [0, 1].map(|half| records.share(x, y, half))).collect();
+    let (out, colours) = row.split_at_mut(bands * width);
+    let mut xyz = vec![0.0; 3 * width];
+    for (band, (out, by)) in out.chunks_exact_mut(width).zip(tristimulus).enumerate() {
+        let [a, b] = halves.each_ref().map(|half| &half[band * width..][..width]);
+        for (out, ((a, b), shares)) in out.iter_mut().zip(a.iter().zip(b).zip(&shares)) {
+            *out = narrow(shares[0] * f64::from(*a) + shares[1] * f64::from(*b));
         }
-        (bands..).zip(xyz).for_each(|(channel, sum)| row[channel * width + x] = narrow(sum));
+        for (sums, by) in xyz.chunks_exact_mut(width).zip(by) {
+            sums.iter_mut().zip(&*out).for_each(|(sum, value)| *sum += by * f64::from(*value));
+        }
     }
+    colours.iter_mut().zip(xyz).for_each(|(colour, sum)| *colour = narrow(sum));
     row
 }
 

@@ -1,5 +1,7 @@
 //! One number per pixel of a picture.
 
+use rayon::prelude::*;
+
 use super::record::narrow;
 
 /// Numbers row by row.
@@ -11,8 +13,29 @@ pub(super) struct Plane {
 
 impl Plane {
     /// Of a number for each column and row.
-    pub(super) fn of(width: usize, height: usize, number: impl Fn(usize, usize) -> f64) -> Self {
-        let values = (0..width * height).map(|i| narrow(number(i % width, i / width))).collect();
+    pub(super) fn of(width: usize, height: usize, number: impl Fn(usize, usize) -> f64 + Sync) -> Self {
+        Self::by_rows(width, height, |y, row| {
+            row.iter_mut().enumerate().for_each(|(x, value)| *value = narrow(number(x, y)));
+        })
+    }
+
+    /// Of weighted sums: for each row, other rows and what each of them counts.
+    pub(super) fn sums<'a, T>(width: usize, height: usize, terms: impl Fn(usize) -> T + Sync) -> Self
+    where
+        T: Iterator<Item = (f64, &'a [f32])>,
+    {
+        Self::by_rows(width, height, |y, row| {
+            let mut sums = vec![0.0; width];
+            for (by, values) in terms(y) {
+                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += by * f64::from(*value));
+            }
+            row.iter_mut().zip(sums).for_each(|(value, sum)| *value = narrow(sum));
+        })
+    }
+
+    fn by_rows(width: usize, height: usize, write: impl Fn(usize, &mut [f32]) + Sync) -> Self {
+        let mut values = vec![0.0; width * height];
+        values.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| write(y, row));
         Self { width, values }
     }
 

@@ -43,8 +43,9 @@ impl Rows<'_> {
 
     /// The luminance of a half.
     pub(super) fn luminance(&self, half: usize, luminous: &[f64]) -> Plane {
-        Plane::of(self.width, self.rows.len(), |x, y| {
-            (luminous.iter().zip(self.layout.band(half)..)).map(|(l, channel)| l * self.at(x, y, channel)).sum()
+        let first = self.layout.band(half);
+        Plane::sums(self.width, self.rows.len(), |y| {
+            luminous.iter().zip(first..).map(move |(by, channel)| (*by, self.channel(y, channel)))
         })
     }
 }
