@@ -22,7 +22,7 @@
 //! Monte Carlo and Quasi-Monte Carlo Methods 2004 (the bound, and what is beyond it).
 
 use glam::DVec3;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::limits::{Follow, Limits};
 use super::packet::{Packet, Vertex};
@@ -235,16 +235,15 @@ impl<'a> VirtualLights<'a> {
         self.effort += set.strengths.len() as f64 / WEIGHED;
         self.weights.clear();
         self.weights.resize(set.strengths.len(), 0.0);
-        let weights = &mut self.weights;
         // The same operations in the same order with any instruction set.
-        Arch::new().dispatch(|| set.weigh(from, normal, weights));
+        Arch::new().dispatch(Weigh { set, from, normal, weights: &mut self.weights });
         if self.most_edges.is_some_and(|most| edges < most) {
-            let far = weights.iter_mut().zip(&set.edges).filter(|(_, own)| **own > edges);
+            let far = self.weights.iter_mut().zip(&set.edges).filter(|(_, own)| **own > edges);
             far.for_each(|(weight, _)| *weight = 0.0);
         }
         let mut sum = 0.0;
         self.sums.clear();
-        self.sums.extend(weights.chunks(BLOCK).map(|block| {
+        self.sums.extend(self.weights.chunks(BLOCK).map(|block| {
             sum += block.iter().sum::<f64>();
             sum
         }));
@@ -318,13 +317,26 @@ impl Set<'_> {
         self.vertices.clear();
         self.fluxes.clear();
     }
+}
 
-    /// S min(G, b) of each, for a point.
+/// S min(G, b) of each of a set, for a point. (No closure: only what is inlined is compiled for the instruction set at hand.)
+struct Weigh<'a> {
+    set: &'a Set<'a>,
+    from: DVec3,
+    normal: DVec3,
+    weights: &'a mut [f64],
+}
+
+impl NullaryFnOnce for Weigh<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn weigh(&self, from: DVec3, normal: DVec3, weights: &mut [f64]) {
+    fn call(self) {
+        let Self { set, from, normal, weights } = self;
         let n = weights.len();
-        let [x, y, z, nx, ny, nz] = self.coordinates.each_ref().map(|all| &all[..n]);
-        let (strengths, bound) = (&self.strengths[..n], self.bound);
+        let [x, y, z, nx, ny, nz] = &set.coordinates;
+        let (x, y, z, nx, ny, nz) = (&x[..n], &y[..n], &z[..n], &nx[..n], &ny[..n], &nz[..n]);
+        let (strengths, bound) = (&set.strengths[..n], set.bound);
         for (i, weight) in weights.iter_mut().enumerate() {
             let (dx, dy, dz) = (x[i] - from.x, y[i] - from.y, z[i] - from.z);
             let squared = dx * dx + dy * dy + dz * dz;
