@@ -9,6 +9,7 @@ pub mod brdf;
 pub mod capture;
 pub mod image;
 pub mod lamp;
+pub mod picture;
 pub mod render;
 pub mod require;
 pub mod spectrum;

@@ -39,9 +39,9 @@ const FEWER: [u64; 5] = [1, 4, 16, 64, 256];
 /// The part at which the other knobs are turned.
 const PART: u64 = 16;
 /// Quantile of the normal distribution of a confidence of 99.8 %.
-const SURE: f64 = 2.878;
+pub(super) const SURE: f64 = 2.878;
 /// Times the scene's samples, for the reference.
-const MORE: u64 = 4;
+pub(super) const MORE: u64 = 4;
 /// Numbers of wavelengths that are tried.
 const WAVELENGTHS: [u32; 4] = [8, 16, 32, 81];
 /// The first edges at which chance may end a path that are tried.
@@ -49,7 +49,7 @@ const ROULETTE: [u32; 2] = [1, 16];
 /// Edges of paths that are tried.
 const EDGES: [u32; 2] = [3, 6];
 /// The seeds of the reference and of the trials are this far apart from the scene's.
-const SEEDS: u64 = 1 << 32;
+pub(super) const SEEDS: u64 = 1 << 32;
 
 /// Why a scene could not be traded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -61,19 +61,14 @@ pub enum RenderError {
     /// There is nothing to read.
     #[error("1:1: the scene has no meter; expected a sensor that reads a number, as `illuminance` does")]
     NoMeter,
+    /// Filtered pictures have four samples a pixel at least, and those that are compared with them a quarter of the scene's.
+    #[error("1:1: {0} samples a pixel; expected 16 or more, as pictures of a quarter are tried")]
+    FewSamples(u64),
 }
 
-/// The knobs.
-const KNOBS: [&str; 8] = [
-    "meter_samples",
-    "solver",
-    "max_edges",
-    "roulette_from",
-    "sampler",
-    "wavelengths",
-    "wavelengths_per_path",
-    "model",
-];
+/// The knobs of meters and pictures alike.
+pub(super) const SHARED: [&str; 7] =
+    ["solver", "max_edges", "roulette_from", "sampler", "wavelengths", "wavelengths_per_path", "model"];
 
 /// A sweep, and the settings of each of its trials.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,25 +130,28 @@ impl Choice {
     }
 
     fn words(&self) -> Vec<String> {
-        let r = &self.render;
-        let model = if r.model == Model::Full { "full" } else { "minimal" };
-        vec![
-            r.meter_samples.to_string(),
-            r.solver.word().to_owned(),
-            r.max_edges.map_or_else(|| "any".to_owned(), |n| n.to_string()),
-            match r.max_edges {
-                Some(most) if most < r.roulette_from => "never".to_owned(),
-                _ => r.roulette_from.to_string(),
-            },
-            r.sampler.word().to_owned(),
-            match r.wavelength_step_nm {
-                Some(_) => self.built.scene.bands().len().to_string(),
-                None => format!("to {}", r.wavelength_tolerance),
-            },
-            r.wavelengths_per_path.word().to_owned(),
-            model.to_owned(),
-        ]
+        let samples = self.render.meter_samples.to_string();
+        [samples].into_iter().chain(words(&self.render, &self.built)).collect()
     }
+}
+
+/// The values of the [`SHARED`] knobs.
+pub(super) fn words(render: &Render, built: &Built) -> [String; 7] {
+    [
+        render.solver.word().to_owned(),
+        render.max_edges.map_or_else(|| "any".to_owned(), |n| n.to_string()),
+        match render.max_edges {
+            Some(most) if most < render.roulette_from => "never".to_owned(),
+            _ => render.roulette_from.to_string(),
+        },
+        render.sampler.word().to_owned(),
+        match render.wavelength_step_nm {
+            Some(_) => built.scene.bands().len().to_string(),
+            None => format!("to {}", render.wavelength_tolerance),
+        },
+        render.wavelengths_per_path.word().to_owned(),
+        if render.model == Model::Full { "full" } else { "minimal" }.to_owned(),
+    ]
 }
 
 /// Tries a scene with `repeats` seeds (at least 5) for each choice of settings.
@@ -201,7 +199,7 @@ pub fn sweep(
     };
     let sweep = Sweep {
         reference: format!("everything modelled, paths of any length, {samples} samples of a meter, a seed of its own"),
-        knobs: KNOBS.to_vec(),
+        knobs: ["meter_samples"].into_iter().chain(SHARED).collect(),
         figures,
         reference_errors: reference.iter().map(own_error).collect(),
         trials,
@@ -215,7 +213,13 @@ fn choices(own: &Render) -> Vec<Render> {
     let least = 4 * REPLICATES as u64;
     let with = |samples: u64| Render { meter_samples: samples.max(least), ..own.clone() };
     let mut out: Vec<Render> = FEWER.iter().map(|part| with(own.meter_samples / part)).collect();
-    let some = with(own.meter_samples / PART);
+    out.extend(turned(own, &with(own.meter_samples / PART)));
+    unique(out)
+}
+
+/// The [`SHARED`] knobs of `some`, each turned alone.
+pub(super) fn turned(own: &Render, some: &Render) -> Vec<Render> {
+    let mut out = Vec::new();
     out.extend([Solver::Whitted, Solver::Direct].map(|solver| Render { solver, ..some.clone() }));
     out.extend(EDGES.map(|n| Render { max_edges: Some(n), ..some.clone() }));
     let [.., most] = EDGES;
@@ -230,9 +234,14 @@ fn choices(own: &Render) -> Vec<Render> {
         out.extend([10.0, 0.1].map(|f| Render { wavelength_tolerance: f * tolerance, ..some.clone() }));
     }
     out.extend(WAVELENGTHS.map(|n| Render { wavelength_step_nm: Some(step_nm(n)), ..some.clone() }));
-    out.push(Render { model: if own.model == Model::Full { Model::Minimal } else { Model::Full }, ..some });
+    out.push(Render { model: if own.model == Model::Full { Model::Minimal } else { Model::Full }, ..some.clone() });
+    out
+}
+
+/// Each once, in the order given.
+pub(super) fn unique(all: Vec<Render>) -> Vec<Render> {
     let mut unique: Vec<Render> = Vec::new();
-    for render in out {
+    for render in all {
         if !unique.contains(&render) {
             unique.push(render);
         }

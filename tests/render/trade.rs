@@ -1,5 +1,8 @@
 //! What a trade of a scene promises: error curves with the slope of theory, and recommendations that hold with other seeds.
 
+use photopic::image::description::Meaning;
+use photopic::image::format::exr;
+use photopic::image::source::{Region, Source};
 use photopic::render::build::{Built, Kind, NoFiles, build};
 use photopic::render::description::Description;
 use photopic::render::estimate::REPLICATES;
@@ -124,12 +127,96 @@ fn scenes_and_files_that_do_not_fit_are_told() {
     let mut render = photopic();
     render.arg("render").arg(&path).arg("--settings").arg(&wrong);
     render.assert().code(2).stderr(contains("wrong.toml:1:1: `meter_samples` is 0; expected at least 1"));
-    let no_meter = HOLLOW.split("[[sensor]]").next().expect("the shapes").to_owned()
-        + "[[sensor]]\nname = \"view\"\ncamera = { at = [0, 0, 0], look_at = [1, 0, 0], field_of_view = \"60 deg\", resolution = [2, 2] }\n";
-    let path = scene(&folder, &no_meter);
+    let gonio = "[[sensor]]\nname = \"lamp\"\ngoniophotometer = { c_step = \"30 deg\", gamma_step = \"15 deg\" }\n";
+    let path = scene(&folder, &(HOLLOW.split("[[sensor]]").next().expect("the shapes").to_owned() + gonio));
     let mut command = photopic();
     command.args(["trade", "render"]).arg(&path);
     command.assert().code(2).stderr(contains("the scene has no meter; expected a sensor that reads a number"));
+    let path = scene(&folder, VIEW);
+    let mut command = photopic();
+    command.args(["trade", "render", "--samples", "15"]).arg(&path);
+    command.assert().code(2).stderr(contains("15 samples a pixel; expected 16 or more"));
+}
+
+/// Inside of a sphere with a lamp in its middle, where every pixel shows the same (tests/render/denoise.rs).
+const VIEW: &str = r#"
+[render]
+wavelength_step_nm = 100
+[[material]]
+name = "wall"
+reflectance = 0.5
+[[shape]]
+material = "wall"
+sphere = { centre = [0, 0, 0], radius = "1 m" }
+[[light]]
+point = { at = [0, 0, 0], flux = "1000 lm" }
+[[sensor]]
+name = "view"
+camera = { at = [0, 0, 0.2], look_at = [0, 1, 0.2], resolution = [24, 20], field_of_view = "60 deg", exr = "view.exr" }
+"#;
+
+/// The errors of pictures are those of the truth, which is L = Φ ρ / (4π² (1 − ρ)) at every pixel; what is recommended keeps to what was asked.
+#[test]
+fn errors_of_pictures_are_true_and_what_is_recommended_holds() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let best = folder.path().join("best.toml");
+    let path = scene(&folder, VIEW);
+    let trade = |error: &str| {
+        let mut command = photopic();
+        command.args(["trade", "render", "--json", "--samples", "16", "--repeats", "5", "--error", error]);
+        json(command.arg("--settings").arg(&best).arg(&path))["results"][0].clone()
+    };
+    let truth = 1000.0 / (4.0 * std::f64::consts::PI.powi(2));
+    // The error of a picture, as root mean square over its pixels: as a file has it.
+    let rendered = |settings: &std::path::Path, seed: &str| -> f64 {
+        let mut render = photopic();
+        render.current_dir(&folder).arg("render").arg(&path).args(["--seed", seed, "--packets", "0", "--settings"]);
+        render.arg(settings).assert().success();
+        let file = std::fs::File::open(folder.path().join("view.exr")).expect("a picture");
+        let mut picture = exr::open(std::io::BufReader::new(file)).expect("a picture").value;
+        let description = picture.description().clone();
+        let y = description.channels.iter().position(|c| c.meaning == Meaning::Tristimulus(1)).expect("Y");
+        let mut pixels = vec![0.0; 480];
+        picture.read(Region::rows(&description, 0, 20), &[y], &mut pixels).expect("pixels");
+        (pixels.iter().map(|l| (f64::from(*l) / truth - 1.0).powi(2)).sum::<f64>() / 480.0).sqrt()
+    };
+    let result = trade("10%");
+    let trials = result["trials"].as_array().expect("trials");
+    let of = |samples: &str, denoise: &str| {
+        let knob = |t: &Value, name: &str, value: &str| t["settings"][name] == value;
+        let own = |t: &&Value| {
+            knob(t, "samples", samples)
+                && knob(t, "denoise", denoise)
+                && ["branches", "virtual_lights", "guiding"].iter().all(|name| knob(t, name, "chosen"))
+                && knob(t, "solver", "path")
+                && knob(t, "max_edges", "any")
+                && knob(t, "roulette_from", "4")
+                && knob(t, "sampler", "sobol")
+                && knob(t, "model", "minimal")
+                && knob(t, "adaptive", "yes")
+                && knob(t, "wavelengths_per_path", "all")
+        };
+        let own = trials.iter().find(own).unwrap_or_else(|| panic!("{samples} {denoise}"));
+        number(&own["errors"]["view"]["error"])
+    };
+    for (samples, denoise) in [("16", "no"), ("4", "no"), ("16", "yes")] {
+        let file = folder.path().join("one.toml");
+        std::fs::write(&file, format!("[render]\nsamples = {samples}\ndenoise = {}\n", denoise == "yes"))
+            .expect("written");
+        let squares = (100..108).map(|seed: i32| rendered(&file, &seed.to_string()).powi(2)).sum::<f64>() / 8.0;
+        // Means over 7 and 8 pictures of 480 pixels, each known to √(2/480) where pixels are independent; filtered ones borrow from 121 others: to a
+        // quarter or so.
+        let allowed = if denoise == "yes" { 0.35 } else { 0.1 };
+        let stated = of(samples, denoise);
+        assert!((stated / squares.sqrt() - 1.0).abs() < allowed, "{samples} {denoise}: {stated} {}", squares.sqrt());
+    }
+    assert!(of("16", "yes") < of("16", "no"), "{trials:?}");
+    // Of cut paths half of the light is lost at each reflection, all but the first: it is told.
+    assert!(result["effects"]["max_edges"]["matters"] == true && result["effects"]["denoise"]["matters"] == true);
+    assert_eq!(result["effects"].as_object().map(serde_json::Map::len), Some(13), "{}", result["effects"]);
+    let chosen = &result["recommended"]["settings"];
+    let within = (200..220).filter(|seed: &i32| rendered(&best, &seed.to_string()) <= 0.1).count();
+    assert!(within >= 19, "{within} of 20 with {chosen}");
 }
 
 #[test]

@@ -14,6 +14,8 @@ use crate::render::sampler::Points;
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
+    samples: Option<u64>,
+    adaptive: Option<bool>,
     meter_samples: Option<u64>,
     solver: Option<Solver>,
     max_edges: Option<Edges>,
@@ -77,8 +79,9 @@ impl Settings {
         let span = file.render.span();
         let settings = Self { text, ..file.render.into_inner() };
         let wrong = |message: &str| Err(at(Mistake::at(&settings.text, &span, message)));
-        if settings.meter_samples == Some(0) {
-            return wrong("`meter_samples` is 0; expected at least 1");
+        let samples = [("samples", settings.samples), ("meter_samples", settings.meter_samples)];
+        if let Some((key, _)) = samples.iter().find(|(_, samples)| *samples == Some(0)) {
+            return wrong(&format!("`{key}` is 0; expected at least 1"));
         }
         if settings.wavelength_tolerance.is_some_and(|t| t <= 0.0) {
             return wrong("`wavelength_tolerance` is not positive; expected a relative error");
@@ -88,6 +91,8 @@ impl Settings {
 
     /// Puts them in place.
     pub(super) fn apply(&self, render: &mut Render) {
+        render.samples = self.samples.unwrap_or(render.samples);
+        render.adaptive = self.adaptive.unwrap_or(render.adaptive);
         render.meter_samples = self.meter_samples.unwrap_or(render.meter_samples);
         render.solver = self.solver.unwrap_or(render.solver);
         render.max_edges = match self.max_edges {
