@@ -177,3 +177,41 @@ fn what_cannot_be_filtered_is_told() {
     let path = scene(&folder, &format!("[render]\nwavelength_step_nm = 100\ndenoise = true\n{ROOM}{LAMP}{VIEW}"));
     photopic().arg("render").arg(&path).arg("--preview").assert().success();
 }
+
+/// Where light is direct and from a point, all noise is that of edges, which filtering blurs: it does not pay, and that is said.
+#[test]
+fn filtering_that_does_not_pay_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene(
+        &folder,
+        r#"
+[render]
+solver = "direct"
+samples = 32
+denoise = true
+wavelength_step_nm = 100
+[[material]]
+name = "floor"
+reflectance = 0.5
+[[material]]
+name = "ball"
+reflectance = 0.1
+[[shape]]
+material = "floor"
+rectangle = { corner = [-3, -3, 0], edges = [[6, 0, 0], [0, 6, 0]] }
+[[shape]]
+material = "ball"
+sphere = { centre = [0, 0, 0.5], radius = "0.5 m" }
+[[light]]
+point = { at = [2, 0.3, 2], flux = "1000 lm" }
+[[sensor]]
+name = "view"
+camera = { at = [0, -4, 2], look_at = [0, 0, 0.3], resolution = [48, 40], field_of_view = "40 deg" }
+"#,
+    );
+    let document = json(photopic().args(["render", "--json", "--packets", "0"]).arg(&path));
+    let (price, findings) = (&document["results"][0]["sensors"][0]["denoised"], &document["findings"]);
+    let [before, after] = ["relative_error_before", "relative_error"].map(|key| price[key].as_f64().expect("a number"));
+    let told = findings.as_array().expect("findings").iter().any(|f| f["code"] == "R010");
+    assert!(after > 2.0_f64.sqrt() * before && told, "{price} {findings}");
+}
