@@ -108,7 +108,16 @@ def chapters(folder: Path) -> dict[str, tuple[str, list[Trade]]]:
                     "render-1",
                     option="--sensor",
                     repeats=8,
-                )
+                ),
+                Trade(
+                    "a picture of it",
+                    "render",
+                    "data/scenes/office.toml --samples 16",
+                    {"view": (0.2, 0.07, 0.03)},
+                    "render-2",
+                    option="--sensor",
+                    repeats=5,
+                ),
             ],
         ),
         "Photographs of a glossy sphere": (

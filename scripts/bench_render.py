@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--mitsuba] [--bands] [--denoise]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--bands] [--denoise]
 
 The neutral JSON scenes are written as TOML for photopic, without polarisation, which neither the references nor Mitsuba's renders of them know (with it
 light in the prism differs from theirs by a relMSE of 0.013); the picture's tristimulus values are compared with the two high-sample references
@@ -204,6 +204,7 @@ def main():
     parser.add_argument("--step-nm", type=float, default=10.0)
     parser.add_argument("--even", action="store_true", help="photopic gives every pixel as many samples")
     parser.add_argument("--solvers", default="path", help="photopic's, such as path,bidirectional")
+    parser.add_argument("--seeds", type=int, default=1, help="renders of each, whose errors are averaged: where few pixels hold most of it one says little")
     parser.add_argument("--mitsuba", action="store_true")
     parser.add_argument("--denoise", action="store_true", help="photopic's filtered pictures as well, of as many samples as they need")
     parser.add_argument("--bands", action="store_true", help="the error of bands of 10 nm in place of luminance")
@@ -218,17 +219,22 @@ def main():
         if arguments.bands:
             compare_bands(binary, name, arguments)
             continue
-        run = lambda solver, name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even, solver)
-        runs = [(solver, lambda solver=solver, run=run: run(solver)) for solver in arguments.solvers.split(",")]
+        run = lambda solver, seed, name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even, solver, seed=seed)
+        runs = [(solver, lambda seed, solver=solver, run=run: run(solver, seed)) for solver in arguments.solvers.split(",")]
         if arguments.mitsuba:
-            runs.append(("mitsuba", lambda name=name: mitsuba(name, arguments.samples)))
+            runs.append(("mitsuba", lambda seed, name=name: mitsuba(name, arguments.samples, seed=seed + 2)))
         for program, run in runs:
-            seconds, xyz = run()
-            if program != "mitsuba":
-                xyz /= CANDELA
-            error, mean = errors(xyz, name)
-            to = seconds * error[1] / 1e-3
-            print(f"{name:12} {program:13} {seconds:8.2f} {error[1]:10.5f} {to:10.2f} {100 * mean[1]:10.3f} %", flush=True)
+            found = []
+            for seed in range(arguments.seeds):
+                seconds, xyz = run(seed)
+                error, mean = errors(xyz if program == "mitsuba" else xyz / CANDELA, name)
+                found.append((seconds, error[1], mean[1]))
+            seconds, error, mean = np.mean(found, axis=0)
+            to = seconds * error / 1e-3
+            print(f"{name:12} {program:13} {seconds:8.2f} {error:10.5f} {to:10.2f} {100 * mean:10.3f} %", flush=True)
+            if arguments.seeds > 1:
+                each = np.array(found)[:, 1]
+                print(f"{'':12} {'':13} {'':8} {each.min():10.5f} to {each.max():.5f}", flush=True)
         if arguments.denoise:
             render = lambda samples, name=name: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", options=["--denoise"])
             denoised(name, render)
