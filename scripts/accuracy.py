@@ -30,6 +30,11 @@ USUAL = {
     "wavelengths": ("to 0.001",),
     "wavelengths_per_path": ("all",),
     "model": ("minimal",),
+    "denoise": ("no",),
+    "adaptive": ("yes",),
+    "branches": ("chosen",),
+    "virtual_lights": ("chosen",),
+    "guiding": ("chosen",),
 }
 
 
@@ -178,7 +183,7 @@ def recommendation(result: dict, figure: str, asked: float) -> list[str]:
     if not meeting:
         return [error(figure, asked), "—", "—", "none of those tried"]
     best, guaranteed = min(meeting, key=lambda pair: pair[0]["time_s"]["median_s"])
-    words = [f"{k} {v}" if v.isdigit() else v for k, v in best["settings"].items() if v not in USUAL.get(k, ())]
+    words = [f"{k} {v}" if v.isdigit() or v in ("yes", "no") else v for k, v in best["settings"].items() if v not in USUAL.get(k, ())]
     return [error(figure, asked), error(figure, guaranteed), time(best["time_s"]["median_s"]), ", ".join(words)]
 
 

@@ -9,7 +9,8 @@
 //! | `solver` | path tracing; with packets from the lights (bidirectional); direct light with its mirror images (Whitted); direct light |
 //! | others | those of the [meters](super::render) |
 //!
-//! All but samples and filtering are turned one at a time, at a quarter of the scene's samples.
+//! All but samples and filtering are turned one at a time, at a quarter of the scene's samples, but 16 at least: with fewer the renderer finds nothing out
+//! about a picture before it renders it.
 //!
 //! **Error** of a picture x, by pictures r₁ and r₂ of other seeds that share no noise with it or with one another:
 //!
@@ -37,7 +38,7 @@ use crate::render::measure::Settings;
 const FEWER: [u64; 3] = [1, 4, 16];
 /// The part at which the other knobs are turned.
 const PART: u64 = 4;
-/// Samples a pixel at least, as a part of them must be enough to be filtered.
+/// Samples a pixel at least: enough for a survey, and a part of them to be filtered.
 const LEAST: u64 = 16;
 /// Numbers of branches that are tried.
 const BRANCHES: [u32; 2] = [1, 4];
@@ -197,7 +198,7 @@ pub fn sweep(
 /// The settings that are tried.
 fn choices(own: &Render) -> Vec<Render> {
     let filtered = |render: &Render| Render { denoise: Some(toml::Spanned::new(0..0, true)), ..render.clone() };
-    let some = Render { samples: own.samples / PART, ..own.clone() };
+    let some = Render { samples: (own.samples / PART).max(LEAST), ..own.clone() };
     let mut out: Vec<Render> =
         FEWER.iter().map(|part| Render { samples: (own.samples / part).max(1), ..own.clone() }).collect();
     let sampled = out.clone();
