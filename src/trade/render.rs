@@ -73,7 +73,7 @@ pub(super) const SHARED: [&str; 7] =
 /// A sweep, and the settings of each of its trials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderSweep {
-    /// The trials; a figure per meter or grid, by the sensor's name.
+    /// The trials; a figure per meter or grid, or that of a camera, by the sensor's name.
     pub sweep: Sweep,
     /// Their settings.
     pub choices: Vec<Render>,
