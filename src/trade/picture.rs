@@ -29,7 +29,7 @@ use crate::image::error::Error as ImageError;
 use crate::image::source::{Region, Source};
 use crate::math::student::{tolerance_95, two_sided_95};
 use crate::render::build::{Built, Files, Kind, build};
-use crate::render::denoise::denoise;
+use crate::render::denoise::{DARK, denoise};
 use crate::render::description::{Description, Error, Model, Render, Solver};
 use crate::render::film::Film;
 use crate::render::measure::Settings;
@@ -42,9 +42,6 @@ const PART: u64 = 4;
 const LEAST: u64 = 16;
 /// Numbers of branches that are tried.
 const BRANCHES: [u32; 2] = [1, 4];
-/// The share of the mean luminance that errors of dark pixels are relative to, as in [`Price`](crate::render::denoise::Price).
-const DARK: f64 = 0.01;
-
 /// The knobs of pictures alone.
 const OWN: [&str; 6] = ["samples", "denoise", "adaptive", "branches", "virtual_lights", "guiding"];
 

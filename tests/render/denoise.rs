@@ -48,10 +48,8 @@ fn error(found: &[f64], truth: &[f64]) -> f64 {
     found.iter().zip(truth).map(|(l, t)| (l - t).powi(2) / (l * l + dark * dark)).sum::<f64>() / n
 }
 
-/// Inside of a sphere with a lamp in its middle the wall is the same everywhere: L = Φ ρ / (4π² (1 − ρ)) for radius 1 m, all reflections of it.
-#[test]
-fn a_sphere_is_even_inside() {
-    let text = r#"
+/// Inside of a sphere with a lamp in its middle the wall is the same everywhere: [`EVEN`], all reflections of it.
+pub const SPHERE: &str = r#"
 [render]
 wavelength_step_nm = 100
 [[material]]
@@ -64,10 +62,16 @@ sphere = { centre = [0, 0, 0], radius = "1 m" }
 point = { at = [0, 0, 0], flux = "1000 lm" }
 [[sensor]]
 name = "view"
-camera = { at = [0, 0, 0.2], look_at = [0, 1, 0.2], resolution = [24, 20], field_of_view = "60 deg" }
+camera = { at = [0, 0, 0.2], look_at = [0, 1, 0.2], resolution = [24, 20], field_of_view = "60 deg", exr = "view.exr" }
 "#;
-    let built = built(text);
-    let truth = vec![1000.0 / (4.0 * std::f64::consts::PI.powi(2)); 480];
+
+/// L = Φ ρ / (4π² (1 − ρ)) for radius 1 m, cd/m².
+pub const EVEN: f64 = 1000.0 / (4.0 * std::f64::consts::PI * std::f64::consts::PI);
+
+#[test]
+fn a_sphere_is_even_inside() {
+    let built = built(SPHERE);
+    let truth = vec![EVEN; 480];
     let (mut squared, mut stated, mut before) = (0.0, 0.0, 0.0);
     for seed in 0..8 {
         let settings = Settings { seed, virtual_lights: Some(false), ..built.settings.clone() };

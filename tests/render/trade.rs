@@ -12,6 +12,7 @@ use predicates::str::contains;
 use serde_json::Value;
 
 use crate::cli::{json, photopic, scene};
+use crate::denoise::{EVEN, SPHERE};
 
 /// A grey hollow sphere with a small lamp in it: light of many bounces, and noise.
 const HOLLOW: &str = r#"
@@ -132,41 +133,23 @@ fn scenes_and_files_that_do_not_fit_are_told() {
     let mut command = photopic();
     command.args(["trade", "render"]).arg(&path);
     command.assert().code(2).stderr(contains("the scene has no meter; expected a sensor that reads a number"));
-    let path = scene(&folder, VIEW);
+    let path = scene(&folder, SPHERE);
     let mut command = photopic();
     command.args(["trade", "render", "--samples", "15"]).arg(&path);
     command.assert().code(2).stderr(contains("15 samples a pixel; expected 16 or more"));
 }
 
-/// Inside of a sphere with a lamp in its middle, where every pixel shows the same (tests/render/denoise.rs).
-const VIEW: &str = r#"
-[render]
-wavelength_step_nm = 100
-[[material]]
-name = "wall"
-reflectance = 0.5
-[[shape]]
-material = "wall"
-sphere = { centre = [0, 0, 0], radius = "1 m" }
-[[light]]
-point = { at = [0, 0, 0], flux = "1000 lm" }
-[[sensor]]
-name = "view"
-camera = { at = [0, 0, 0.2], look_at = [0, 1, 0.2], resolution = [24, 20], field_of_view = "60 deg", exr = "view.exr" }
-"#;
-
-/// The errors of pictures are those of the truth, which is L = Φ ρ / (4π² (1 − ρ)) at every pixel; what is recommended keeps to what was asked.
+/// The errors of pictures are those of the truth, which is the same at every pixel; what is recommended keeps to what was asked.
 #[test]
 fn errors_of_pictures_are_true_and_what_is_recommended_holds() {
     let folder = tempfile::tempdir().expect("a folder");
     let best = folder.path().join("best.toml");
-    let path = scene(&folder, VIEW);
+    let path = scene(&folder, SPHERE);
     let trade = |error: &str| {
         let mut command = photopic();
         command.args(["trade", "render", "--json", "--samples", "16", "--repeats", "5", "--error", error]);
         json(command.arg("--settings").arg(&best).arg(&path))["results"][0].clone()
     };
-    let truth = 1000.0 / (4.0 * std::f64::consts::PI.powi(2));
     // The error of a picture, as root mean square over its pixels: as a file has it.
     let rendered = |settings: &std::path::Path, seed: &str| -> f64 {
         let mut render = photopic();
@@ -178,7 +161,7 @@ fn errors_of_pictures_are_true_and_what_is_recommended_holds() {
         let y = description.channels.iter().position(|c| c.meaning == Meaning::Tristimulus(1)).expect("Y");
         let mut pixels = vec![0.0; 480];
         picture.read(Region::rows(&description, 0, 20), &[y], &mut pixels).expect("pixels");
-        (pixels.iter().map(|l| (f64::from(*l) / truth - 1.0).powi(2)).sum::<f64>() / 480.0).sqrt()
+        (pixels.iter().map(|l| (f64::from(*l) / EVEN - 1.0).powi(2)).sum::<f64>() / 480.0).sqrt()
     };
     let result = trade("10%");
     let trials = result["trials"].as_array().expect("trials");
@@ -204,9 +187,9 @@ fn errors_of_pictures_are_true_and_what_is_recommended_holds() {
         std::fs::write(&file, format!("[render]\nsamples = {samples}\ndenoise = {}\n", denoise == "yes"))
             .expect("written");
         let squares = (100..108).map(|seed: i32| rendered(&file, &seed.to_string()).powi(2)).sum::<f64>() / 8.0;
-        // Means over 7 and 8 pictures of 480 pixels, each known to √(2/480) where pixels are independent; filtered ones borrow from 121 others: to a
-        // quarter or so.
-        let allowed = if denoise == "yes" { 0.35 } else { 0.1 };
+        // Means over 7 and 8 pictures of 480 pixels: of normal noise their ratio has a standard error of √(1/960 (1/7 + 1/8)) = 1.7 %, and that of paths
+        // which chance lets go on has tails: six of these. Filtered pixels borrow from 121 others: a quarter, as in tests/render/denoise.rs.
+        let allowed = if denoise == "yes" { 0.25 } else { 0.1 };
         let stated = of(samples, denoise);
         assert!((stated / squares.sqrt() - 1.0).abs() < allowed, "{samples} {denoise}: {stated} {}", squares.sqrt());
     }

@@ -29,7 +29,7 @@ pub(super) enum TradeCommand {
     Image(Box<image::ImageArgs>),
     /// Angles, interpolation and precision of a lamp's table, and from where on the lamp is a point.
     Lamp(lamp::LampArgs),
-    /// Samples, solver, path length, wavelengths and extent of the model of a scene's meters.
+    /// Samples, solver, path length, wavelengths and extent of the model of a scene's meters and pictures.
     Render(render::RenderArgs),
 }
 

@@ -44,7 +44,7 @@ mod tile;
 mod weights;
 
 /// The share of the mean luminance that errors of dark pixels are told relative to.
-const DARK: f64 = 0.01;
+pub const DARK: f64 = 0.01;
 
 /// How far a picture is off, relative: the root of the mean squared error of luminance over the pixels, each relative to √(L² + (L̄/100)²) of the
 /// filtered picture; 0 where its own noise hides it.

@@ -332,8 +332,8 @@ impl Pixels<'_> {
     }
 }
 
-/// Packed as the format's ZIP has it: the bytes at even places, then those at odd ones, each less the one before it, deflated; as they are where that is
-/// not less. (The crate `exr` can do it too, with a compressor that takes twice as long for the same size.)
+/// Packed as the format's ZIP has it (OpenEXR's own ImfZip.cpp, as the crate `exr` reads it): the bytes at even places, then those at odd ones, each less the one before it, deflated; as they are where that is
+/// not less. (The crate can write it too, with a compressor that takes twice as long for the same size.)
 fn zip(data: Vec<u8>) -> Vec<u8> {
     let (even, odd) = (data.iter().step_by(2), data.iter().skip(1).step_by(2));
     let mut last = 128;
