@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--bands] [--denoise]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--whole] [--bands] [--denoise] [--denominators N]
 
 The neutral JSON scenes are written as TOML for photopic, without polarisation, which neither the references nor Mitsuba's renders of them know (with it
 light in the prism differs from theirs by a relMSE of 0.013); the picture's tristimulus values are compared with the two high-sample references
@@ -10,6 +10,10 @@ the whole command, the relative error of luminance, and the seconds to an error 
 variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md).
 With --bands the error is that of the 30 bands of 10 nm from 400 to 700 nm instead: half the mean squared difference of two renders, relative to
 r² + (0.01 mean)² of a render of eight times the samples by photopic; printed are the median over the bands and their range.
+With --whole each program is also timed as its user waits for it, from the command to the picture on disk: Mitsuba's start, loading and compiling
+included; and of photopic's what reading the scene takes (`render --check`), which Mitsuba's render call does not contain.
+With --denominators N errors are relative to a picture of N samples a pixel by photopic, in place of the references' mean, where that is noisy itself
+(the prism's are: a relMSE of 0.023 each, so that not even the truth has less than 0.0085). What is compared stays the references.
 With --denoise photopic's pictures are also filtered (`--denoise`), at 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
 better as 1/N, so the seconds are those between the last two, along a straight line of logarithms.
 Exit status 2 where the scenes are not there.
@@ -98,11 +102,12 @@ def scene(name, step_nm, adaptive, solver):
     return "\n\n".join(parts)
 
 
-def errors(xyz, name):
-    """Relative squared error of X, Y, Z and the relative error of their means."""
+def errors(xyz, name, relative_to=None):
+    """Relative squared error of X, Y, Z and the relative error of their means; relative to the references' or those of a given picture."""
     references = np.load(SHARED / "references" / f"ref_spectral_{name}.npz")
     r1, r2 = references["r1"].astype(float), references["r2"].astype(float)
-    r, mean = (r1 + r2) / 2, ((r1 + r2) / 2).mean((0, 1))
+    mean = ((r1 + r2) / 2).mean((0, 1))
+    r = (r1 + r2) / 2 if relative_to is None else relative_to
     error = (xyz - r1) * (xyz - r2) / (r**2 + (0.01 * mean) ** 2)
     return error.mean((0, 1)), xyz.mean((0, 1)) / mean - 1
 
@@ -115,13 +120,16 @@ def ours(binary, name, samples, step_nm, adaptive, solver, channels=("X", "Y", "
         start = time.perf_counter()
         subprocess.run(command, cwd=folder, check=True)
         seconds = time.perf_counter() - start
+        if channels is None:
+            return seconds, None
         with OpenEXR.File(str(path / "view.exr"), separate_channels=True) as file:
             stored = file.channels()
             pixels = np.stack([stored[c].pixels for c in channels], axis=-1).astype(float)
     return seconds, pixels
 
 
-def mitsuba(name, samples, bands=False, seed=2):
+def mitsuba_scene(name, samples):
+    """Mitsuba's description of a scene."""
     import mitsuba as mi
 
     if not mi.variant():
@@ -137,7 +145,13 @@ def mitsuba(name, samples, bands=False, seed=2):
 
         mi_disp.register()
         integrator = {"type": "hero", "max_depth": 12, "rr_depth": 8}
-    description = build(name.removesuffix("+disp"), samples, dispersive=dispersive, integrator=integrator, sampler="multijitter")
+    return build(name.removesuffix("+disp"), samples, dispersive=dispersive, integrator=integrator, sampler="multijitter")
+
+
+def mitsuba(name, samples, bands=False, seed=2):
+    description = mitsuba_scene(name, samples)
+    import mitsuba as mi
+
     if bands:
         size = {k: description["sensor"]["film"][k] for k in ("width", "height", "rfilter")}
         description["sensor"]["film"] = {"type": "specfilm", "component_format": "float32"} | size
@@ -175,12 +189,32 @@ def compare_bands(binary, name, arguments):
         print(f"{name:12} {'ratio':13} {'':19} {np.median(ratio):10.2f} {ratio.min():8.2f} to {ratio.max():.2f}", flush=True)
 
 
-def denoised(name, run):
+def whole(binary, name, arguments):
+    """Prints what a user waits for."""
+    seconds, _ = ours(binary, name, 16, arguments.step_nm, False, "path", options=["--check"], channels=None)
+    print(f"{name:12} {'reading alone':13} {seconds:8.2f}", flush=True)
+    if arguments.mitsuba:
+        start = time.perf_counter()
+        subprocess.run([sys.executable, __file__, "--once", "--scenes", name, "--samples", str(arguments.samples)], check=True)
+        print(f"{name:12} {'mitsuba whole':13} {time.perf_counter() - start:8.2f}", flush=True)
+
+
+def once(name, samples):
+    """Renders a picture with Mitsuba and writes it, as a program of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        description = mitsuba_scene(name, samples)
+        import mitsuba as mi
+
+        picture = mi.render(mi.load_dict(description), spp=samples, seed=1)
+        mi.util.write_bitmap(str(Path(folder) / "view.exr"), picture, write_async=False)
+
+
+def denoised(name, run, relative_to):
     """Prints filtered renders of ever more samples until one is good enough, and the seconds to it."""
     seconds, error = [], []
     for samples in (2**k for k in range(2, 12)):
         spent, xyz = run(samples)
-        errors_xyz, mean = errors(xyz / CANDELA, name)
+        errors_xyz, mean = errors(xyz / CANDELA, name, relative_to)
         seconds.append(spent)
         error.append(errors_xyz[1])
         print(f"{name:12} {f'denoised, {samples}':13} {spent:8.2f} {error[-1]:10.5f} {'':10} {100 * mean[1]:10.3f} %", flush=True)
@@ -206,12 +240,18 @@ def main():
     parser.add_argument("--solvers", default="path", help="photopic's, such as path,bidirectional")
     parser.add_argument("--seeds", type=int, default=1, help="renders of each, whose errors are averaged: where few pixels hold most of it one says little")
     parser.add_argument("--mitsuba", action="store_true")
+    parser.add_argument("--whole", action="store_true", help="what a user waits for as well: start, reading, compiling, writing")
+    parser.add_argument("--once", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--denominators", type=int, default=0, help="errors relative to a picture of so many samples by photopic")
     parser.add_argument("--denoise", action="store_true", help="photopic's filtered pictures as well, of as many samples as they need")
     parser.add_argument("--bands", action="store_true", help="the error of bands of 10 nm in place of luminance")
     arguments = parser.parse_args()
     if not SHARED.is_dir():
         print("skipped: ../shared/render is not here")
         return 2
+    if arguments.once:
+        once(arguments.scenes, arguments.samples)
+        return 0
     binary = str(Path(arguments.binary).resolve())
     last = "of all bands" if arguments.bands else "mean Y off"
     print(f"{'scene':12} {'program':13} {'s':>8} {'relMSE':>10} {'s to 1e-3':>10} {last:>11}")
@@ -219,6 +259,11 @@ def main():
         if arguments.bands:
             compare_bands(binary, name, arguments)
             continue
+        if arguments.whole:
+            whole(binary, name, arguments)
+        relative_to = None
+        if arguments.denominators:
+            relative_to = ours(binary, name, arguments.denominators, arguments.step_nm, not arguments.even, "path", seed=10**6)[1] / CANDELA
         run = lambda solver, seed, name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even, solver, seed=seed)
         runs = [(solver, lambda seed, solver=solver, run=run: run(solver, seed)) for solver in arguments.solvers.split(",")]
         if arguments.mitsuba:
@@ -227,7 +272,7 @@ def main():
             found = []
             for seed in range(arguments.seeds):
                 seconds, xyz = run(seed)
-                error, mean = errors(xyz if program == "mitsuba" else xyz / CANDELA, name)
+                error, mean = errors(xyz if program == "mitsuba" else xyz / CANDELA, name, relative_to)
                 found.append((seconds, error[1], mean[1]))
             seconds, error, mean = np.mean(found, axis=0)
             to = seconds * error / 1e-3
@@ -237,7 +282,7 @@ def main():
                 print(f"{'':12} {'':13} {'':8} {each.min():10.5f} to {each.max():.5f}", flush=True)
         if arguments.denoise:
             render = lambda samples, name=name: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", options=["--denoise"])
-            denoised(name, render)
+            denoised(name, render, relative_to)
     return 0
 
 

@@ -9,7 +9,8 @@ use super::bands::Bands;
 use super::emission::Emission;
 use super::light::Light;
 use super::light::area::AreaLight;
-use super::material::Material;
+use super::material::{Material, Nature};
+use super::ray::{Crossing, Ray, SurfacePoint};
 use super::shape::{Bounds, Shape};
 
 /// One surface of a scene with what it is made of.
@@ -35,6 +36,7 @@ pub struct Scene {
     light_of_surface: Vec<Option<usize>>,
     /// The surface that a light is, by light.
     surface_of_light: Vec<Option<usize>>,
+    chooses_bands: bool,
 }
 
 impl Scene {
@@ -57,7 +59,9 @@ impl Scene {
             emissions.push(part.emission);
         }
         let surfaces = Surfaces::new(shapes);
-        Self { bands, surfaces, materials, emissions, lights, light_of_surface, surface_of_light }
+        let alike = |material: &dyn Material| material.is_diffuse() && material.nature() == Nature::default();
+        let chooses_bands = !materials.iter().all(|material| alike(material.as_ref()));
+        Self { bands, surfaces, materials, emissions, lights, light_of_surface, surface_of_light, chooses_bands }
     }
 
     /// The wavelengths it was prepared for.
@@ -76,6 +80,23 @@ impl Scene {
     #[must_use]
     pub fn material(&self, surface: usize) -> &dyn Material {
         self.materials[surface].as_ref()
+    }
+
+    /// The point of a surface at a crossing, with texture coordinates where its material has to do with them.
+    #[must_use]
+    pub fn surface_point(&self, surface: usize, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        let shape = &self.surfaces.shapes()[surface];
+        if self.materials[surface].converts() {
+            shape.surface(ray, crossing)
+        } else {
+            shape.plain_surface(ray, crossing)
+        }
+    }
+
+    /// Whether any material asks for a band of which a path is the path: not where all are diffuse.
+    #[must_use]
+    pub fn chooses_bands(&self) -> bool {
+        self.chooses_bands
     }
 
     /// The emission of a surface.

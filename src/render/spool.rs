@@ -21,7 +21,7 @@ use super::estimate::{Faults, REPLICATES, Replicate};
 use super::noise::Noise;
 
 /// The first bytes of a file.
-const MAGIC: &[u8] = b"photopic render 1\n";
+const MAGIC: &[u8] = b"photopic render 2\n";
 /// The longest header that is read, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 const CHECKSUM: usize = 8;

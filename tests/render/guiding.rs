@@ -85,8 +85,8 @@ fn pictures_are_those_of_the_path_tracer() {
     }
 }
 
-/// The mean of the radiance along rays that are drawn in a cone, where paths go both ways at glass, is what a meter of that cone reads, where
-/// they go one: in every band, with polarisation, dispersion, and lamps seen by reflections inside.
+/// The mean of the radiance along rays that are drawn in a cone, which go both ways at glass as long as either is above 0.2 %, is what a meter of that
+/// cone reads, whose paths go on one way much sooner: in every band, with polarisation, dispersion, and lamps seen by reflections inside.
 #[test]
 fn both_ways_are_the_mean_of_either() {
     let built = built(&format!("[render]\nwavelength_step_nm = 60\n{ROOM}{BALL}{PANE}{LAMP}{VIEW}"));

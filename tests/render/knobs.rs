@@ -131,11 +131,13 @@ fn parts_of_a_render_keep_their_settings() {
     photopic().arg("merge").args([&shards[0], &other]).assert().code(2);
 }
 
+/// Renders whose errors are averaged.
+const SEEDS: u64 = 96;
+
 /// The root of the mean square error of a lamp's illuminance over seeds, for some numbers of samples.
 fn errors(points: Points) -> Vec<(f64, f64)> {
     /// Of each replicate.
     const SAMPLES: [u64; 4] = [16, 64, 256, 1024];
-    const SEEDS: u64 = 24;
     // A square of 1 m 1 m above: π L F with F = (4/2π) · 2 (a/√(1 + a²)) atan(a/√(1 + a²)) of its quarters, a = 1/2 (Howell's catalogue, B-3).
     let quarter = 0.5 / 1.25_f64.sqrt();
     let expected = 1000.0 * 4.0 * quarter * quarter.atan();
@@ -169,8 +171,8 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 
 #[test]
 fn errors_of_random_numbers_fall_with_their_root_and_of_sobol_points_faster() {
-    // The root of a mean of 24 squares scatters by 1/√48; the slope of a line through four of them, ln 4 apart, by that over ln 4 · √5.
-    let scatter = 48_f64.sqrt().recip() / (4_f64.ln() * 5_f64.sqrt());
+    // The root of a mean of n squares scatters by 1/√(2n); the slope of a line through four of them, ln 4 apart, by that over ln 4 · √5.
+    let scatter = (2.0 * SEEDS as f64).sqrt().recip() / (4_f64.ln() * 5_f64.sqrt());
     let (random, sobol) = (errors(Points::Independent), errors(Points::Sobol));
     let (a, b) = (slope(&random), slope(&sobol));
     assert!((a + 0.5).abs() < 3.0 * scatter, "{a}: {random:?}");

@@ -121,7 +121,7 @@ impl<'a> Packet<'a> {
     /// Where it comes to along a ray that meets a surface; `None` on a side that the shading normal does not have: no light comes from there.
     #[must_use]
     pub fn vertex(&self, ray: &Ray, surface: usize, crossing: &Crossing) -> Option<Vertex<'a>> {
-        let point = self.scene.surfaces().surface_point(surface, ray, crossing);
+        let point = self.scene.surface_point(surface, ray, crossing);
         let frame = Frame::of(point.shading, point.tangent);
         let back = -ray.direction;
         let arriving = frame.local(back);

@@ -10,7 +10,7 @@
 //! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
 //! the path leaves the glass and says nothing about what the path is worth.
 //!
-//! Of two ways at a polished surface that the camera sees both are followed ([`super::waiting`]); from diffuse surfaces paths may be guided
+//! Of two ways at a polished surface both are followed unless one is faint ([`super::waiting`]); from diffuse surfaces paths may be guided
 //! ([`super::guide`]).
 //!
 //! A path from a camera may leave the first surface that scatters by n ways, each with 1/n of the weight ([`PathTracer::branching`]); the light
@@ -25,6 +25,8 @@
 mod found;
 mod onwards;
 mod sight;
+
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -115,6 +117,8 @@ struct Edge {
     straight: bool,
     /// The share of the light on the way that the path went at polished surfaces where it went both ways.
     chance: f64,
+    /// The same since the last surface that is not polished; 1 where the path is straight.
+    lately: f64,
     /// How much likelier its direction is by guiding than by the material, at least 1: so much more the path is worth than it carries.
     guided: f64,
 }
@@ -159,6 +163,7 @@ impl Edge {
             count: 1,
             straight: false,
             chance: 1.0,
+            lately: 1.0,
             guided: 1.0,
         }
     }
@@ -288,7 +293,7 @@ impl<'a> PathTracer<'a> {
         }
         let [u0, u1, ..] = sampler.four();
         let (local, weight) = response.sample([u0, u1]);
-        self.throughput.iter_mut().for_each(|t| *t *= weight);
+        self.scale(weight);
         let direction = frame.world(local);
         let ray = Ray { origin: point.origin_towards(direction), direction };
         let own = response.pdf(local);
@@ -314,6 +319,9 @@ impl<'a> PathTracer<'a> {
     /// The path carries all bands, and a band is drawn that it will keep where it must be split, or from here on.
     fn choose_hero(&mut self, sampler: &mut Sampler) {
         self.split = false;
+        if !self.limits.single_band && !self.scene.chooses_bands() {
+            return;
+        }
         let u = sampler.one();
         self.hero = self.heroes.partition_point(|&s| s <= u).min(self.heroes.len() - 1);
         if self.limits.single_band {
@@ -337,10 +345,23 @@ impl<'a> PathTracer<'a> {
         self.throughput[self.hero] = kept;
     }
 
+    /// The bands that the path carries.
+    fn carried(&self) -> Range<usize> {
+        if self.split { self.hero..self.hero + 1 } else { 0..self.throughput.len() }
+    }
+
+    fn scale(&mut self, by: f64) {
+        let carried = self.carried();
+        self.throughput[carried].iter_mut().for_each(|t| *t *= by);
+    }
+
     /// Follows a path, which leaves the first surface that scatters by so many ways.
     fn follow(&mut self, start: Edge, branches: u32, sampler: &mut Sampler) {
+        let others = self.waiting.count();
         self.follow_one(start, branches, sampler);
-        while let Some((mut carried, edge)) = self.waiting.pop() {
+        while self.waiting.count() > others
+            && let Some((mut carried, edge)) = self.waiting.pop()
+        {
             self.exchange(&mut carried);
             self.waiting.give_back(carried);
             self.follow_one(edge, branches, sampler);
@@ -358,7 +379,7 @@ impl<'a> PathTracer<'a> {
                 }
                 return;
             };
-            let point = self.scene.surfaces().surface_point(surface, &edge.ray, &crossing);
+            let point = self.scene.surface_point(surface, &edge.ray, &crossing);
             if self.sees {
                 self.see(&edge, surface, &point);
             }
@@ -399,7 +420,7 @@ impl<'a> PathTracer<'a> {
             }
             self.choice.prepare(self.scene.lights(), vertex.point.position);
             if let Some(edge) = self.leave(vertex, branches, &mut sampler) {
-                self.follow_one(edge, 1, &mut sampler);
+                self.follow(edge, 1, &mut sampler);
             }
         }
         self.share = 1.0;
@@ -417,7 +438,10 @@ impl<'a> PathTracer<'a> {
         let material = self.scene.material(surface);
         let frame = Frame::of(point.shading, point.tangent);
         let outgoing = frame.local(-edge.ray.direction);
-        let u = sampler.four();
+        let seek = !material.is_delta();
+        // On polished surfaces nothing is sought, nor where the surroundings alone shine.
+        let sought = seek && self.choice.seeks();
+        let u = if sought || seek && self.virtual_lights.is_some() { sampler.four() } else { [0.0; 4] };
         if material.converts() {
             if self.seen.is_none() && material.nature().fluoresces {
                 // One band of the instrument goes on; all bands of the light may come into it.
@@ -431,15 +455,18 @@ impl<'a> PathTracer<'a> {
         if material.splits() {
             self.split();
         }
-        let seek = !material.is_delta();
         let mut chance = edge.chance;
-        if seek && edge.straight && chance < SEEN {
-            // On the faintest ways nothing but lamps is bright enough to be looked for every time.
-            if sampler.one() * SEEN >= chance {
-                return None;
+        if seek && chance < 1.0 {
+            // On faint ways nothing but lamps is bright enough to be looked for every time. What the others carry less counts from here on as
+            // little worth, so that chance ends as many as are added and paths do not multiply.
+            let followed = if edge.straight { (chance / SEEN).min(1.0) } else { edge.lately.sqrt() };
+            chance /= if edge.straight { followed } else { edge.lately };
+            if followed < 1.0 {
+                if sampler.one() >= followed {
+                    return None;
+                }
+                self.scale(1.0 / followed);
             }
-            self.throughput.iter_mut().for_each(|t| *t *= SEEN / chance);
-            chance = SEEN;
         }
         let shares = !self.split && material.is_diffuse() && self.virtual_lights.is_some();
         if shares && self.is_found(edge, &point, sampler) {
@@ -458,18 +485,20 @@ impl<'a> PathTracer<'a> {
         let onwards = Edge {
             straight: edge.straight && !seek,
             chance,
+            lately: if seek { 1.0 } else { edge.lately },
             // Either way of a Dirac lobe is as probable as the other; no packet comes to the lens from it.
             rival: if connected { 0.0 } else { rival },
             ..*edge
         };
         let vertex =
             Vertex { material, point, frame, outgoing, edge: onwards, seek, shares, u: u[3], connected, rival, guided };
-        if seek {
+        if sought {
             self.choice.prepare(self.scene.lights(), point.position);
             // Where the path ends here, no other strategy competes with the light's own.
             let competing = if self.limits.follow == Follow::All { f64::from(branches) } else { 0.0 };
+            let carried = self.carried();
             let function = |incident, value: &mut [f64]| {
-                let pdf = evaluate(material, incident, outgoing, hero, value);
+                let pdf = evaluate(material, incident, outgoing, (hero, carried.clone()), value);
                 let pdf = guided.map_or(pdf, |g| g.density(frame.world(incident), pdf));
                 [competing * pdf, rival * vertex.sent(incident, hero)]
             };
@@ -479,10 +508,16 @@ impl<'a> PathTracer<'a> {
     }
 }
 
-/// Writes f_s |cosθ_i| and gives the density of the material's own sampling.
-fn evaluate(material: &dyn Material, incident: DVec3, outgoing: DVec3, hero: usize, value: &mut [f64]) -> f64 {
+/// Writes f_s |cosθ_i| of the bands that are carried and gives the density of the material's own sampling.
+fn evaluate(
+    material: &dyn Material,
+    incident: DVec3,
+    outgoing: DVec3,
+    (hero, carried): (usize, Range<usize>),
+    value: &mut [f64],
+) -> f64 {
     material.evaluate(incident, outgoing, Transport::Radiance, value);
-    value.iter_mut().for_each(|v| *v *= incident.z.abs());
+    value[carried].iter_mut().for_each(|v| *v *= incident.z.abs());
     material.pdf(outgoing, incident, hero)
 }
 

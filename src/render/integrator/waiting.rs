@@ -1,8 +1,9 @@
-//! Both ways at the polished surfaces that a camera sees: what a path carries on each of them.
+//! Both ways at polished surfaces: what a path carries on each of them.
 //!
 //! Glass shows two pictures, a faint one of what it mirrors and one of what is behind. A path that draws one of them by chance sees the
-//! faint one seldom, and bright then. Where a path comes from the camera over polished surfaces alone it therefore goes on both ways, as long as both
-//! are likely enough.
+//! faint one seldom, and bright then. A path therefore goes on both ways, as long as both are likely enough: very faint ones are followed where the
+//! camera sees the glass, others where a surface that is not polished does, whose light is a mean over many directions. Where a faint way comes to such a
+//! surface it is followed by chance, but the lamps that it meets before that are seen each time.
 
 use crate::render::integrator::polarisation::Polarisation;
 
@@ -49,6 +50,12 @@ impl<E> Waiting<E> {
     /// A way that is to be followed.
     pub fn push(&mut self, carried: Carried, end: E) {
         self.waiting.push((carried, end));
+    }
+
+    /// The number of ways that wait.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.waiting.len()
     }
 
     /// The last way that waits.

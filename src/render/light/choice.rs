@@ -28,6 +28,8 @@ pub struct Choice {
     fixed: bool,
     /// Lights that shine alike from everywhere are not chosen.
     found: bool,
+    /// There are others.
+    seeks: bool,
 }
 
 impl Choice {
@@ -35,11 +37,11 @@ impl Choice {
     /// directions that are drawn for the surface or the instrument, which suit them best.
     #[must_use]
     pub fn new(lights: &[Arc<dyn Light>], scene_centre: DVec3, found: bool) -> Self {
-        let mut choice = Self { sums: Vec::with_capacity(lights.len()), fixed: false, found };
+        let sought = lights.iter().filter(|light| !(found && light.is_uniform())).count();
+        let mut choice = Self { sums: Vec::with_capacity(lights.len()), fixed: false, found, seeks: sought > 0 };
         choice.prepare(lights, scene_centre);
         choice.fixed = lights.len() > FEW;
         if let (true, Some(total)) = (choice.fixed, choice.sums.last().copied()) {
-            let sought = lights.iter().filter(|light| !(found && light.is_uniform())).count();
             let share = |sum: f64| if total > 0.0 { sum / total } else { 0.0 };
             let mut so_far = 0;
             for (light, sum) in lights.iter().zip(&mut choice.sums) {
@@ -48,6 +50,12 @@ impl Choice {
             }
         }
         choice
+    }
+
+    /// Whether there is anything to choose, at any point.
+    #[must_use]
+    pub fn seeks(&self) -> bool {
+        self.seeks
     }
 
     /// Weighs the lights for a point; many stay as they are. Does not allocate.

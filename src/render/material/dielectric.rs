@@ -38,6 +38,8 @@ pub struct Interface {
     /// n_inside / n_outside.
     eta: Vec<f64>,
     disperses: bool,
+    /// Bands of the least and the greatest of them: one of both reflects most, or hardly less than that.
+    extremes: [usize; 2],
 }
 
 impl Interface {
@@ -50,7 +52,10 @@ impl Interface {
         let eta: Vec<f64> = inside.iter().zip(outside).map(|(i, o)| i / o).collect();
         #[expect(clippy::float_cmp, reason = "bands part where their directions are not the same number")]
         let disperses = eta.iter().any(|e| *e != eta[0]);
-        Ok(Self { eta, disperses })
+        let bands = || eta.iter().enumerate();
+        let [least, greatest] = [bands().min_by(|a, b| a.1.total_cmp(b.1)), bands().max_by(|a, b| a.1.total_cmp(b.1))];
+        let extremes = [least, greatest].map(|band| band.map_or(0, |(band, _)| band));
+        Ok(Self { eta, disperses, extremes })
     }
 
     /// n_beyond / n_here of a band, as seen from a direction's side.
@@ -121,28 +126,29 @@ impl Material for Dielectric {
         if cos == 0.0 {
             return None;
         }
-        if self.interface.disperses {
-            weights.iter_mut().zip(self.interface.all(outgoing)).for_each(|(w, eta)| *w = dielectric(cos, eta));
-        } else {
-            weights.fill(dielectric(cos, self.interface.relative(hero, outgoing)));
-        }
-        // A band of little reflectance does not stand alone for one that reflects much: no weight is above 4.
-        let largest = weights.iter().copied().fold(0.0, f64::max);
-        let share = weights[hero].max(0.25 * largest);
+        let reflectance = |band: usize| dielectric(cos, self.interface.relative(band, outgoing));
+        let own = reflectance(hero);
+        // A band of little reflectance does not stand alone for one that reflects much: no weight is far above 4.
+        let share = own.max(0.25 * self.interface.extremes.map(reflectance).into_iter().fold(0.0, f64::max));
         let (reflects, _) = split(u[0], share);
         if reflects {
-            weights.iter_mut().for_each(|w| *w /= share);
+            if self.interface.disperses {
+                let all = weights.iter_mut().zip(self.interface.all(outgoing));
+                all.for_each(|(w, eta)| *w = dielectric(cos, eta) / share);
+            } else {
+                weights.fill(own / share);
+            }
             let direction = DVec3::new(-outgoing.x, -outgoing.y, outgoing.z);
             return Some(Scattered { direction, pdf: share, delta: true, split: false, eta: 1.0 });
         }
         let eta = self.interface.relative(hero, outgoing);
         let direction = refracted(outgoing, eta)?;
-        for (band, weight) in weights.iter_mut().enumerate() {
-            if self.interface.disperses && band != hero {
-                *weight = 0.0;
-                continue;
-            }
-            *weight = (1.0 - *weight) / (1.0 - share) * scaling(self.interface.relative(band, outgoing), transport);
+        let weight = (1.0 - own) / (1.0 - share) * scaling(eta, transport);
+        if self.interface.disperses {
+            weights.fill(0.0);
+            weights[hero] = weight;
+        } else {
+            weights.fill(weight);
         }
         Some(Scattered { direction, pdf: 1.0 - share, delta: true, split: self.interface.disperses, eta })
     }

@@ -98,6 +98,11 @@ pub trait Shape: std::fmt::Debug + Send + Sync {
     /// The surface at a crossing of this shape.
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint;
 
+    /// The same for those who have nothing to do with texture coordinates: these are 0 where they take time.
+    fn plain_surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        self.surface(ray, crossing)
+    }
+
     /// Area, m²; infinite for an unbounded plane.
     fn area(&self) -> f64;
 

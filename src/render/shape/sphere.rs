@@ -56,8 +56,21 @@ impl Sphere {
         Self { turn: DMat3::from_quat(rotation) * self.turn, ..self }
     }
 
+    /// From the centre to a crossing, as a unit vector. A sphere so small for its distance that the crossing is its centre to the last digit faces
+    /// the ray.
+    fn outwards(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
+        let outwards = ray.origin - self.centre + crossing.t * ray.direction;
+        outwards.try_normalize().unwrap_or(-ray.direction)
+    }
+
     /// The point in the direction `outwards` (unit) from the centre.
     fn point(&self, outwards: DVec3) -> SurfacePoint {
+        let local = self.turn.transpose() * outwards;
+        SurfacePoint { uv: DVec2::new(phi(local) / TAU, theta(local) / PI), ..self.plain(outwards) }
+    }
+
+    /// The same without texture coordinates.
+    fn plain(&self, outwards: DVec3) -> SurfacePoint {
         let position = self.centre + self.radius * outwards;
         let local = self.turn.transpose() * outwards;
         let (y, x) = if local.x == 0.0 && local.y == 0.0 { (0.0, 1.0) } else { (local.y, local.x) };
@@ -70,7 +83,7 @@ impl Sphere {
             normal: outwards,
             shading: outwards,
             tangent,
-            uv: DVec2::new(phi(local) / TAU, theta(local) / PI),
+            uv: DVec2::ZERO,
         }
     }
 
@@ -109,9 +122,11 @@ impl Shape for Sphere {
     }
 
     fn surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
-        let outwards = ray.origin - self.centre + crossing.t * ray.direction;
-        // A sphere so small for its distance that the crossing is its centre to the last digit faces the ray.
-        self.point(outwards.try_normalize().unwrap_or(-ray.direction))
+        self.point(self.outwards(ray, crossing))
+    }
+
+    fn plain_surface(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+        self.plain(self.outwards(ray, crossing))
     }
 
     fn charts(&self) -> Vec<(u32, Chart)> {

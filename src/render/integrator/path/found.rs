@@ -16,10 +16,19 @@ impl PathTracer<'_> {
             self.value.fill(0.0);
             light.add_radiance(edge.ray.direction, &mut self.value);
             let rival = self.rival(edge.rival, index, edge.from, edge.ray.direction, f64::INFINITY);
-            let other = edge.pdf.map_or(0.0, |pdf| {
-                ratio(self.choice.probability(index) * light.pdf_towards(edge.from, edge.ray.direction), pdf)
-            });
+            let other = self.other(edge, index);
             self.add(power_heuristic(other, rival));
+        }
+    }
+
+    /// The density with which a light is drawn in the direction of an edge, over that of the path's own way.
+    fn other(&self, edge: &Edge, light: usize) -> f64 {
+        match (edge.pdf, self.choice.probability(light)) {
+            (Some(pdf), probability) if probability > 0.0 => {
+                let light = &self.scene.lights()[light];
+                ratio(probability * light.pdf_towards(edge.from, edge.ray.direction), pdf)
+            }
+            _ => 0.0,
         }
     }
 
@@ -34,12 +43,10 @@ impl PathTracer<'_> {
         let weight = self.scene.light_of_surface(surface).map_or(1.0, |light| {
             let (from, direction) = (edge.from, edge.ray.direction);
             let rival = self.rival(edge.rival, light, from, direction, from.distance(point.position));
-            let other = edge.pdf.map_or(0.0, |pdf| {
-                ratio(self.choice.probability(light) * self.scene.lights()[light].pdf_towards(from, direction), pdf)
-            });
-            power_heuristic(other, rival)
+            power_heuristic(self.other(edge, light), rival)
         });
-        self.value.copy_from_slice(emission.radiance());
+        let carried = self.carried();
+        self.value[carried.clone()].copy_from_slice(&emission.radiance()[carried]);
         self.add(weight * profile);
     }
 
@@ -75,7 +82,8 @@ impl PathTracer<'_> {
             return;
         }
         let [own, before] = function(local, &mut self.value);
-        if self.value.iter().all(|&v| v == 0.0) {
+        let carried = self.carried();
+        if self.value[carried.clone()].iter().all(|&v| v == 0.0) {
             return;
         }
         let ray = Ray { origin: point.origin_towards(towards.direction), direction: towards.direction };
@@ -89,7 +97,7 @@ impl PathTracer<'_> {
         let own = if towards.delta { 0.0 } else { own };
         let rival = self.rival(before, index, point.position, towards.direction, towards.distance);
         let weight = power_heuristic(own / pdf, rival / pdf) / pdf;
-        multiply(&mut self.value, &self.arriving);
+        multiply(&mut self.value[carried.clone()], &self.arriving[carried]);
         self.add(weight);
     }
 
@@ -130,11 +138,12 @@ impl PathTracer<'_> {
 
     /// Adds throughput · value · weight: band by band, or of all bands of the light to the one that the instrument sees.
     pub(super) fn add(&mut self, weight: f64) {
-        let weight = weight * self.share;
-        let products = self.throughput.iter().zip(&self.value).map(|(t, v)| t * v * weight);
+        let (weight, carried) = (weight * self.share, self.carried());
+        let products =
+            self.throughput[carried.clone()].iter().zip(&self.value[carried.clone()]).map(|(t, v)| t * v * weight);
         match self.seen {
             Some(band) => self.radiance[band] += products.sum::<f64>(),
-            None => self.radiance.iter_mut().zip(products).for_each(|(r, p)| *r += p),
+            None => self.radiance[carried].iter_mut().zip(products).for_each(|(r, p)| *r += p),
         }
     }
 }

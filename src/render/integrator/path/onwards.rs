@@ -10,8 +10,20 @@ use crate::render::sampler::Sampler;
 
 /// Of two ways at a polished surface both are followed if the fainter of them has no less than this share of the path.
 const FAINTEST: f64 = 0.002;
+/// And behind a surface that is not polished.
+const FAINTEST_BEHIND: f64 = 0.02;
+/// Edges of a path up to there: later ones matter little, and in a closed bright room there are many.
+const EARLY: u32 = 8;
 /// The last number below 1.
 const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
+
+impl Edge {
+    /// Where the path goes both ways: the one that has so much of it.
+    fn sharing(self, share: f64) -> Self {
+        let lately = if self.straight { 1.0 } else { self.lately * share };
+        Self { chance: self.chance * share, lately, ..self }
+    }
+}
 
 impl<'a> PathTracer<'a> {
     /// Draws virtual lights for a vertex and the next edge, one of so many that leave it.
@@ -26,12 +38,12 @@ impl<'a> PathTracer<'a> {
         let drawn = match guided.and_then(|g| g.draw(sampler.four())) {
             Some(direction) => {
                 let incident = frame.local(direction);
-                let pdf = evaluate(material, incident, outgoing, hero, &mut self.value);
+                let pdf = evaluate(material, incident, outgoing, (hero, self.carried()), &mut self.value);
                 // On the other side of the surface.
                 if pdf == 0.0 {
                     return None;
                 }
-                self.value.iter_mut().for_each(|v| *v /= pdf);
+                self.weigh(1.0 / pdf);
                 Scattered { direction: incident, pdf, delta: false, split: false, eta: 1.0 }
             }
             None => self.draw(vertex, [u0, u1, u2])?,
@@ -40,18 +52,17 @@ impl<'a> PathTracer<'a> {
             return None;
         }
         if drawn.delta {
-            if here.straight && self.set_aside(&here, vertex, &drawn, [u1, u2, u3]) {
-                here.chance *= drawn.pdf;
-                self.value.iter_mut().for_each(|v| *v *= drawn.pdf);
+            if self.set_aside(&here, vertex, &drawn, [u1, u2, u3]) {
+                here = here.sharing(drawn.pdf);
+                self.weigh(drawn.pdf);
             }
             return self.onwards(&here, vertex, &drawn, u3);
         }
         // By all ways of drawing the direction; the material's own may not know it.
         let pdf = guided.map_or(drawn.pdf, |g| g.density(frame.world(drawn.direction), drawn.pdf));
         if guided.is_some() {
-            let scale = drawn.pdf / pdf;
             self.guided += 2;
-            self.value.iter_mut().for_each(|v| *v *= scale);
+            self.weigh(drawn.pdf / pdf);
             here.guided = (pdf / drawn.pdf).max(1.0);
         } else {
             here.guided = 1.0;
@@ -60,6 +71,12 @@ impl<'a> PathTracer<'a> {
         let next = self.onwards(&here, vertex, &drawn, u3)?;
         let shared = if vertex.shares { drawn.direction.z.abs() } else { 0.0 };
         Some(Edge { pdf: vertex.seek.then(|| f64::from(branches) * pdf), shared, ..next })
+    }
+
+    /// Weighs what was drawn.
+    fn weigh(&mut self, by: f64) {
+        let carried = self.carried();
+        self.value[carried].iter_mut().for_each(|v| *v *= by);
     }
 
     /// Draws a direction at a vertex.
@@ -76,7 +93,8 @@ impl<'a> PathTracer<'a> {
     /// Sets the other of two Dirac lobes aside, to be followed later; not where they are not two, or one of them is too faint. What was drawn
     /// of the one stays.
     fn set_aside(&mut self, edge: &Edge, at: &Vertex<'_>, drawn: &Scattered, [u1, u2, u]: [f64; 3]) -> bool {
-        if edge.chance * drawn.pdf.min(1.0 - drawn.pdf) < FAINTEST {
+        let (chance, faintest) = if edge.straight { (edge.chance, FAINTEST) } else { (edge.lately, FAINTEST_BEHIND) };
+        if chance * drawn.pdf.min(1.0 - drawn.pdf) < faintest || !edge.straight && edge.count > EARLY {
             return false;
         }
         std::mem::swap(&mut self.value, &mut self.arriving);
@@ -93,8 +111,8 @@ impl<'a> PathTracer<'a> {
             aside.throughput.copy_from_slice(&self.throughput);
             aside.polarisation.copy(&self.polarisation);
             (aside.split, aside.hero, aside.seen) = (self.split, self.hero, self.seen);
-            self.value.iter_mut().for_each(|v| *v *= other.pdf);
-            let next = self.onwards(&Edge { chance: edge.chance * other.pdf, ..*edge }, at, &other, u);
+            self.weigh(other.pdf);
+            let next = self.onwards(&edge.sharing(other.pdf), at, &other, u);
             self.exchange(&mut aside);
             match next {
                 Some(next) => self.waiting.push(aside, next),
@@ -113,16 +131,16 @@ impl<'a> PathTracer<'a> {
         if direction.dot(point.normal) * drawn.direction.z <= 0.0 {
             return None;
         }
-        multiply(&mut self.throughput, &self.value);
+        let carried = self.carried();
+        multiply(&mut self.throughput[carried.clone()], &self.value[carried.clone()]);
         if self.limits.polarisation && drawn.delta {
             let (hero, directions) = (self.hero, [edge.ray.direction, direction]);
-            let bands = if self.split { hero..hero + 1 } else { 0..self.throughput.len() };
-            let components = |c: &mut [_]| match bands.len() {
+            let components = |c: &mut [_]| match carried.len() {
                 1 => material.polarise_band(outgoing, drawn.direction, hero, c),
                 _ => material.polarise(outgoing, drawn.direction, c),
             };
             let throughput = &mut self.throughput;
-            self.polarisation.turn_bands(components, directions, point.shading, bands.clone(), throughput);
+            self.polarisation.turn_bands(components, directions, point.shading, carried.clone(), throughput);
         } else {
             self.polarisation.clear();
         }
@@ -132,12 +150,12 @@ impl<'a> PathTracer<'a> {
         let index_squared = edge.index_squared * drawn.eta * drawn.eta;
         let drawn_for = if self.limits.single_band { self.probability_of_hero() } else { 1.0 };
         let worth = index_squared * drawn_for * edge.guided / edge.chance;
-        let strength = worth * largest(&self.throughput);
+        let strength = worth * largest(&self.throughput[self.carried()]);
         if edge.count >= self.limits.roulette_from && strength < 1.0 {
             if u >= strength {
                 return None;
             }
-            self.throughput.iter_mut().for_each(|t| *t /= strength);
+            self.scale(1.0 / strength);
         }
         if strength == 0.0 {
             return None;

@@ -43,7 +43,7 @@ impl PathTracer<'_> {
         match self.scene.surfaces().closest(&ray, f64::INFINITY) {
             Some((surface, _)) if self.scene.material(surface).is_delta() => return None,
             Some((surface, crossing)) => {
-                let point = self.scene.surfaces().surface_point(surface, &ray, &crossing);
+                let point = self.scene.surface_point(surface, &ray, &crossing);
                 self.see(&edge, surface, &point);
             }
             None => self.see_beyond(&edge),
