@@ -2,7 +2,7 @@
 //! machines did.
 //!
 //! ```text
-//! photopic render 1\n
+//! photopic render 2\n
 //! length of the header, u64; header, JSON
 //! per meter point and replicate:  samples, faults, sums per band; checksum
 //! per picture and row:            noise, samples of all channels (f32, channel by channel); checksum
