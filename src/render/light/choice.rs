@@ -28,7 +28,7 @@ pub struct Choice {
     fixed: bool,
     /// Lights that shine alike from everywhere are not chosen.
     found: bool,
-    /// There are others.
+    /// There are others, or all are chosen and there is one.
     seeks: bool,
 }
 
@@ -178,6 +178,10 @@ mod tests {
             let sum = |choice: &Choice| (0..lights.len()).map(|i| choice.probability(i)).sum::<f64>();
             let [found, sought] = [true, false].map(|found| Choice::new(&lights, DVec3::Y, found));
             assert_eq!(found.probability(1), 0.0);
+            // It alone: nothing is sought where it is found.
+            assert!(found.seeks() && sought.seeks());
+            let alone = &lights[1..2];
+            assert!(!Choice::new(alone, DVec3::Y, true).seeks() && Choice::new(alone, DVec3::Y, false).seeks());
             assert!(sought.probability(1) > 0.9);
             assert!((sum(&found) - 1.0).abs() < 1e-12 && (sum(&sought) - 1.0).abs() < 1e-12);
         }

@@ -288,6 +288,12 @@ mod tests {
         let ray = Ray { origin: DVec3::X * 3.0, direction: DVec3::NEG_X };
         let pole = turned.surface(&ray, &turned.cross(&ray, 0.0, 9.0).unwrap());
         assert!(pole.uv.y < 1e-15 && (pole.tangent.length() - 1.0).abs() < 1e-15, "{pole:?}");
+        // Who has nothing to do with the texture sees the same but for its coordinates.
+        let ray = Ray { origin: DVec3::new(3.0, 1.0, 0.5), direction: DVec3::new(-3.0, -0.8, -0.1).normalize() };
+        let crossing = turned.cross(&ray, 0.0, 9.0).unwrap();
+        let (whole, plain) = (turned.surface(&ray, &crossing), turned.plain_surface(&ray, &crossing));
+        assert_ne!(whole.uv, DVec2::ZERO);
+        assert_eq!(SurfacePoint { uv: DVec2::ZERO, ..whole }, plain);
         assert!(Sphere::new(DVec3::ZERO, 0.0).is_err() && Sphere::new(DVec3::NAN, 1.0).is_err());
     }
 }
