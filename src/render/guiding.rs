@@ -37,9 +37,12 @@ pub fn suits(scene: &Scene, limits: &Limits) -> bool {
 /// Learns from about `wanted` packets, the random numbers of which are those of the instrument `instrument`. `None` where none is of help.
 #[must_use]
 pub fn learn(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -> Option<Guide> {
-    if !suits(scene, &settings.limits) {
-        return None;
-    }
+    if suits(scene, &settings.limits) { Guide::new(landings(scene, settings, instrument, wanted)) } else { None }
+}
+
+/// Where about `wanted` packets come to surfaces that may be guided: [`learn`].
+#[must_use]
+pub fn landings(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -> Landings {
     let shares = Shares::new(scene.lights(), scene.bands().len());
     let per_round = wanted.clamp(PACKETS[0], PACKETS[1]).div_ceil(ROUNDS * STREAMS as u64);
     let mut found = Landings::default();
@@ -65,7 +68,7 @@ pub fn learn(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -
             break;
         }
     }
-    Guide::new(found)
+    found
 }
 
 /// Follows packets, of one stream.
@@ -80,9 +83,11 @@ struct Learner<'a> {
 
 impl<'a> Learner<'a> {
     fn new(scene: &'a Scene, settings: &'a Settings, shares: &'a Shares) -> Self {
+        // Where either of two ways is drawn as often, the flux of polarised light would grow with every reflection.
+        let limits = Limits { polarisation: false, ..settings.limits };
         Self {
             scene,
-            packet: Packet::new(scene, settings.limits, &settings.heroes, shares),
+            packet: Packet::new(scene, limits, &settings.heroes, shares),
             most_edges: settings.limits.max_edges.map(|max| max.saturating_sub(1)),
             value: vec![0.0; scene.bands().len()],
             landings: Landings::default(),

@@ -172,3 +172,39 @@ fn paths_are_guided_where_there_is_glass() {
     assert!(suits(&ball) && !suits(&block));
     assert!(!suits(&ball.replace("[render]", "[render]\nsolver = \"whitted\"")));
 }
+
+/// In a closed space a packet comes to 1/(1 − ρ) diffuse surfaces, with glass that takes nothing in it as well: of all but those that are straight
+/// from the lamp it is told. Polarised flux, that grew where the more seldom way is drawn as often, would go on without end.
+#[test]
+fn packets_end_in_a_closed_space() {
+    let text = r#"
+[render]
+wavelength_step_nm = 100
+[[material]]
+name = "white"
+reflectance = 0.9
+[[material]]
+name = "glass"
+dielectric = { index = 1.73 }
+[[shape]]
+material = "white"
+sphere = { centre = [0, 0, 0], radius = "1 m" }
+[[shape]]
+material = "glass"
+sphere = { centre = [0.3, 0, 0], radius = "0.6 m" }
+[[shape]]
+material = "white"
+emission = { radiance = "1000 cd/m2", spectrum = "D65" }
+sphere = { centre = [0, 0.8, 0], radius = "0.05 m" }
+"#;
+    let built = built(&format!("{text}{VIEW}"));
+    assert!(built.settings.limits.polarisation);
+    // The fewest that are sent.
+    let packets = 65_536.0_f64;
+    let landings = guiding::landings(&built.scene, &built.settings, 1, 1);
+    let each = (landings.polished.len() + landings.plain.len()) as f64 / packets;
+    // The number is geometric, of variance ρ/(1 − ρ)²: five standard errors.
+    let error = 5.0 * (0.9_f64 / 0.01 / packets).sqrt();
+    assert!(each > 9.0 - error && each < 10.0 + error, "{each}");
+    assert!(landings.polished.len() > landings.plain.len() / 10);
+}

@@ -457,10 +457,9 @@ impl<'a> PathTracer<'a> {
         }
         let mut chance = edge.chance;
         if seek && chance < 1.0 {
-            // On faint ways nothing but lamps is bright enough to be looked for every time. What the others carry less counts from here on as
-            // little worth, so that chance ends as many as are added and paths do not multiply.
+            // On faint ways nothing but lamps is bright enough to be looked for every time.
             let followed = if edge.straight { (chance / SEEN).min(1.0) } else { edge.lately.sqrt() };
-            chance /= if edge.straight { followed } else { edge.lately };
+            chance /= followed;
             if followed < 1.0 {
                 if sampler.one() >= followed {
                     return None;
