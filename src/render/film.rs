@@ -36,7 +36,7 @@ const TRIAL: u64 = SURVEYED - 1;
 /// And those of the packets that guide.
 const LEARNT: u64 = SURVEYED - 2;
 /// One packet for so many samples is sent to guide them.
-const PACKET: u64 = 4;
+const PACKET: u64 = 2;
 /// What guiding finds is seldom seen without it, so that a few samples make it look dearer than it is: by no more than this.
 const UNSEEN: f64 = 2.0;
 /// The bit in which the streams of their virtual lights differ from them.

@@ -18,14 +18,16 @@ use super::scene::Scene;
 
 /// Independent streams of packets.
 const STREAMS: usize = 64;
-/// Rounds, at most.
-const ROUNDS: u64 = 8;
+/// Rounds, at most: what one finds is kept whole, however much it is.
+const ROUNDS: u64 = 32;
 /// Packets of all rounds, at least and at most.
 const PACKETS: [u64; 2] = [1 << 16, 1 << 23];
 /// So many landings are enough.
-const ENOUGH: usize = 1 << 19;
-/// One landing of so many packets of the first round is too few: others do not look for more.
-const RARE: usize = 4096;
+const ENOUGH: usize = 1 << 20;
+/// One landing of so many packets is too few, after twice as many: others do not look for more.
+const RARE: u64 = 4096;
+/// One of so many packets tells of what comes straight from diffuse surfaces: of that only the flux counts, and in bright rooms it is much.
+const PLAIN: u64 = 16;
 
 /// Whether there is anything to be guided: a surface that is not polished, and one that is.
 #[must_use]
@@ -44,7 +46,7 @@ pub fn learn(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -
 #[must_use]
 pub fn landings(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -> Landings {
     let shares = Shares::new(scene.lights(), scene.bands().len());
-    let per_round = wanted.clamp(PACKETS[0], PACKETS[1]).div_ceil(ROUNDS * STREAMS as u64);
+    let per_stream = wanted.clamp(PACKETS[0], PACKETS[1]).div_ceil(ROUNDS * STREAMS as u64);
     let mut found = Landings::default();
     for round in 0..ROUNDS {
         let parts: Vec<Landings> = (0..STREAMS)
@@ -52,9 +54,9 @@ pub fn landings(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64
             .map(|number| {
                 let mut learner = Learner::new(scene, settings, &shares);
                 let mut sampler = settings.sampler(stream(instrument, number));
-                for index in round * per_round..(round + 1) * per_round {
+                for index in round * per_stream..(round + 1) * per_stream {
                     sampler.start(index);
-                    learner.packet(&mut sampler);
+                    learner.packet(&mut sampler, index % PLAIN == 0);
                 }
                 learner.landings
             })
@@ -63,7 +65,8 @@ pub fn landings(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64
             found.polished.append(&mut part.polished);
             found.plain.append(&mut part.plain);
         }
-        let rare = found.polished.len() * RARE < STREAMS * usize::try_from(per_round).unwrap_or(usize::MAX);
+        let sent = (round + 1) * per_stream * STREAMS as u64;
+        let rare = sent >= 2 * RARE && (found.polished.len() as u64) < sent / RARE;
         if rare || found.polished.len() >= ENOUGH {
             break;
         }
@@ -111,7 +114,8 @@ impl<'a> Learner<'a> {
         2.0 * pdf
     }
 
-    fn packet(&mut self, sampler: &mut Sampler) {
+    /// Follows a packet; `whole` if it tells of what comes straight from diffuse surfaces as well.
+    fn packet(&mut self, sampler: &mut Sampler, whole: bool) {
         let Some((mut ray, origin)) = self.packet.emit(sampler) else { return };
         // Whether the last surfaces were polished, and whether a path may meet what is before them.
         let (mut polished, mut met, mut weight) = (false, false, 1.0);
@@ -131,9 +135,11 @@ impl<'a> Learner<'a> {
                 let seen = self.value.iter().any(|v| *v > 0.0);
                 let landing = Landing { position: vertex.point.position, back: vertex.back, weight };
                 match (seen, polished) {
-                    (false, _) => {}
                     (true, true) => self.landings.polished.push(landing),
-                    (true, false) => self.landings.plain.push(landing),
+                    (true, false) if whole => {
+                        self.landings.plain.push(Landing { weight: PLAIN as f64 * weight, ..landing });
+                    }
+                    _ => {}
                 }
             }
             let mut u = sampler.four();

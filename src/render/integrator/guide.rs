@@ -2,16 +2,16 @@
 //!
 //! What glass gathers on a floor is light that comes from a few directions, and a path that leaves the floor in any direction seldom runs
 //! through the glass into the lamp: a few samples are very bright, all others see none of it. Packets of flux that are sent before the picture is
-//! taken land there, and tell the directions. They are sorted into the leaves of a tree, some dozens in each, and a direction is drawn by
+//! taken land there, and tell the directions. They are sorted into the leaves of a tree, up to 256 in each, and a direction is drawn by
 //!
 //! ```text
 //! p(ω) = a g(ω) + (1 − a) p_f(ω)
 //! g(ω) = Σ_j w_j [ (1 − t) C(|ω − ω_j|; r_j) + t C(|ω − ω_j|; 3 r_j) ] / Σ_j w_j,    C(d; r) = 1/(π r²) for d < r, else 0
 //! ```
 //!
-//! ω_j, w_j: directions that the packets of the leaf came from, and their flux (they go either way at glass alike, so that places that the fainter of
-//! both alone lights are known as well); r_j: 3/2 of the distance from ω_j to the third nearest other of them; C is uniform on
-//! a cap of the sphere, whose area is π r² for the chord r; p_f: the material's own density. The share a is the larger the more of the packets
+//! ω_j, w_j: directions that the packets of the leaf came from, and their flux to the power of 3/4, so that faint ones, which are very bright where they
+//! are found by chance, are found more often (they go either way at glass alike, so that places that the fainter of both alone lights are known as
+//! well); r_j: 6/5 of the distance from ω_j to the sixth nearest other of them; C is uniform on a cap of the sphere, whose area is π r² for the chord r; p_f: the material's own density. The share a is the larger the more of the packets
 //! that come to the leaf in a roundabout way came over polished surfaces, and never is 1, so that no direction is left out. The density is known
 //! for every direction, so that nothing is biased, whatever the packets found; it takes the place of the material's wherever ways of finding
 //! a light are weighed against each other.
@@ -27,25 +27,30 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use pulp::{Arch, NullaryFnOnce};
 
 use crate::geometry::direction::tangents;
 use crate::math::sampling::{cone, split};
 use crate::render::material::Material;
 
 /// Most packets of a leaf.
-const LEAF: usize = 64;
+const LEAF: usize = 256;
+/// Caps that are looked at together.
+const LANES: usize = 8;
 /// Fewer landings than this say nothing.
 const LEAST: usize = 256;
 /// Which of the nearest other directions tells how wide a cap is, and how much wider it is than that.
-const NEAREST: usize = 3;
-const WIDER: f64 = 1.5;
+const NEAREST: usize = 6;
+const WIDER: f64 = 1.2;
+/// w_j is this power of the packet's flux.
+const FLATTER: f64 = 0.75;
 /// The share of the wide caps, and how much wider they are.
 const TAIL: f64 = 0.2;
 const WIDE: f64 = 3.0;
 /// r_j² is within these bounds: a needle of 0.1 mrad, and wide caps of no more than the sphere.
 const SQUARES: [f64; 2] = [1e-8, 4.0 / (WIDE * WIDE)];
 /// The share of guided directions is within these bounds.
-const SHARES: [f64; 2] = [0.1, 0.7];
+const SHARES: [f64; 2] = [0.1, 0.8];
 /// The time in which a direction's density is found, in searches along a ray, about.
 pub const EFFORT: f64 = 0.3;
 
@@ -73,7 +78,9 @@ pub struct Landings {
 #[derive(Debug, Clone)]
 pub struct Guide {
     nodes: Vec<Node>,
-    caps: Vec<Cap>,
+    caps: Vec<Caps>,
+    /// The instructions of this machine.
+    arch: Arch,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -84,22 +91,30 @@ enum Node {
     Leaf { first: usize, end: usize, share: f64 },
 }
 
-/// Of chord √`square` about `axis`.
+/// Caps of a leaf, one in each lane; those that fill its last lanes are nowhere and weigh nothing.
 #[derive(Debug, Clone, Copy)]
-struct Cap {
-    axis: DVec3,
-    square: f64,
+struct Caps {
+    /// Their middles.
+    axes: [[f64; LANES]; 3],
+    /// Squares of their chords r.
+    squares: [f64; LANES],
     /// w (1 − t)/(π r²) over Σ w of the leaf.
-    density: f64,
-    /// Running sum, up to 1, of w over Σ w.
-    end: f64,
+    densities: [f64; LANES],
+    /// Running sums, up to 1, of w over Σ w.
+    ends: [f64; LANES],
+}
+
+impl Caps {
+    const NONE: Self =
+        Self { axes: [[0.0; LANES]; 3], squares: [0.0; LANES], densities: [0.0; LANES], ends: [1.0; LANES] };
 }
 
 /// The directions of one place.
 #[derive(Debug, Clone, Copy)]
 pub struct Guided<'a> {
-    caps: &'a [Cap],
+    caps: &'a [Caps],
     share: f64,
+    arch: Arch,
 }
 
 /// Whether paths that come to a material may be guided.
@@ -112,7 +127,7 @@ impl Guide {
     /// Of some landings; `None` where they are too few.
     #[must_use]
     pub fn new(mut landings: Landings) -> Option<Self> {
-        let mut guide = Self { nodes: Vec::new(), caps: Vec::new() };
+        let mut guide = Self { nodes: Vec::new(), caps: Vec::new(), arch: Arch::new() };
         if landings.polished.len() < LEAST {
             return None;
         }
@@ -132,7 +147,7 @@ impl Guide {
     fn grow(&mut self, landings: &mut [Landing]) {
         if landings.len() <= LEAF {
             let first = self.caps.len();
-            self.caps.extend(caps(landings));
+            self.caps.append(&mut caps(landings));
             let weight = landings.iter().map(|landing| landing.weight).sum();
             self.nodes.push(Node::Leaf { first, end: self.caps.len(), share: weight });
             return;
@@ -163,10 +178,11 @@ impl Guide {
     /// The directions of a place.
     #[must_use]
     pub fn at(&self, position: DVec3) -> Guided<'_> {
-        match self.nodes[self.leaf(position)] {
-            Node::Leaf { first, end, share } => Guided { caps: &self.caps[first..end], share },
-            Node::Split { .. } => Guided { caps: &[], share: 0.0 },
-        }
+        let (caps, share) = match self.nodes[self.leaf(position)] {
+            Node::Leaf { first, end, share } => (&self.caps[first..end], share),
+            Node::Split { .. } => (&[] as &[Caps], 0.0),
+        };
+        Guided { caps, share, arch: self.arch }
     }
 
     /// The density with which a path goes on from a place of a material into a direction, given that of the material's own sampling, 1/sr.
@@ -177,36 +193,62 @@ impl Guide {
 }
 
 /// The caps of a leaf.
-fn caps(landings: &[Landing]) -> impl Iterator<Item = Cap> {
+fn caps(landings: &[Landing]) -> Vec<Caps> {
+    let mut caps = vec![Caps::NONE; landings.len().div_ceil(LANES)];
     let mut squares = Vec::with_capacity(landings.len());
-    let (mut sum, total) = (0.0, landings.iter().map(|landing| landing.weight).sum::<f64>());
-    landings.iter().map(move |landing| {
+    let count = |landing: &Landing| landing.weight.powf(FLATTER);
+    let (mut sum, total) = (0.0, landings.iter().map(count).sum::<f64>());
+    for (number, landing) in landings.iter().enumerate() {
         squares.clear();
         squares.extend(landings.iter().map(|other| landing.back.distance_squared(other.back)));
         // The direction itself is the nearest of all.
         let (_, nearest, _) = squares.select_nth_unstable_by(NEAREST, f64::total_cmp);
         let square = (*nearest * WIDER * WIDER).clamp(SQUARES[0], SQUARES[1]);
-        sum += landing.weight;
-        let density = landing.weight / total * (1.0 - TAIL) / (PI * square);
-        Cap { axis: landing.back, square, density, end: sum / total }
-    })
+        let w = count(landing);
+        sum += w;
+        let (caps, lane) = (&mut caps[number / LANES], number % LANES);
+        (0..3).for_each(|axis| caps.axes[axis][lane] = landing.back[axis]);
+        caps.squares[lane] = square;
+        caps.densities[lane] = w / total * (1.0 - TAIL) / (PI * square);
+        // The last one ends where all do.
+        caps.ends[lane] = if number + 1 < landings.len() { sum / total } else { 1.0 };
+    }
+    caps
+}
+
+/// g(ω) of a unit vector, with the instructions of the machine: the same operations in the same order with any.
+struct Density<'a> {
+    caps: &'a [Caps],
+    direction: DVec3,
+}
+
+impl NullaryFnOnce for Density<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        const FAINTER: f64 = TAIL / (1.0 - TAIL) / (WIDE * WIDE);
+        let mut sums = [0.0; LANES];
+        for caps in self.caps {
+            let [x, y, z] = &caps.axes;
+            for i in 0..LANES {
+                // Of unit vectors, the squared distance.
+                let square = 2.0 - 2.0 * (x[i] * self.direction.x + y[i] * self.direction.y + z[i] * self.direction.z);
+                let inner = if square < caps.squares[i] { 1.0 } else { 0.0 };
+                let outer = if square < WIDE * WIDE * caps.squares[i] { FAINTER } else { 0.0 };
+                sums[i] += (inner + outer) * caps.densities[i];
+            }
+        }
+        sums.iter().sum()
+    }
 }
 
 impl Guided<'_> {
     /// p(ω) of a unit vector in the world, given p_f, 1/sr.
     #[must_use]
     pub fn density(&self, direction: DVec3, own: f64) -> f64 {
-        const FAINTER: f64 = TAIL / (1.0 - TAIL) / (WIDE * WIDE);
-        let sum: f64 = (self.caps.iter())
-            .map(|cap| {
-                // Of unit vectors, the squared distance.
-                let square = 2.0 - 2.0 * cap.axis.dot(direction);
-                let inner = if square < cap.square { 1.0 } else { 0.0 };
-                let outer = if square < WIDE * WIDE * cap.square { FAINTER } else { 0.0 };
-                (inner + outer) * cap.density
-            })
-            .sum();
-        self.share * sum + (1.0 - self.share) * own
+        let guided = self.arch.dispatch(Density { caps: self.caps, direction });
+        self.share * guided + (1.0 - self.share) * own
     }
 
     /// Draws a direction of g; `None`, with the probability 1 − a, where the material's own sampling is to draw one.
@@ -216,13 +258,15 @@ impl Guided<'_> {
         if !guided {
             return None;
         }
-        let index = self.caps.partition_point(|cap| cap.end <= choice);
-        let cap = self.caps.get(index).or(self.caps.last())?;
-        let square = if tail < TAIL { WIDE * WIDE * cap.square } else { cap.square };
+        let among = self.caps.partition_point(|caps| caps.ends[LANES - 1] <= choice);
+        let caps = self.caps.get(among)?;
+        let lane = caps.ends.partition_point(|end| *end <= choice);
+        let axis = DVec3::from(caps.axes.map(|along| along[lane]));
+        let square = if tail < TAIL { WIDE * WIDE * caps.squares[lane] } else { caps.squares[lane] };
         // A chord r spans the angle τ with r² = 2 (1 − cos τ).
         let local = cone([u, v], 0.5 * square);
-        let (x, y) = tangents(cap.axis);
-        Some(local.x * x + local.y * y + local.z * cap.axis)
+        let (x, y) = tangents(axis);
+        Some(local.x * x + local.y * y + local.z * axis)
     }
 }
 
@@ -265,7 +309,7 @@ mod tests {
         let n = 200_000;
         for position in [DVec3::new(0.1, 0.1, 0.0), DVec3::new(0.7, 0.2, 0.0), DVec3::new(5.0, -3.0, 1.0)] {
             let guided = guide.at(position);
-            assert!(!guided.caps.is_empty() && guided.caps.len() <= LEAF);
+            assert!(!guided.caps.is_empty() && guided.caps.len() <= LEAF.div_ceil(LANES));
             let (mut whole, mut upper, mut squares, mut own) = (0.0, 0.0, [0.0; 2], 0.0);
             for _ in 0..n {
                 let u = std::array::from_fn(|_| numbers.uniform());
@@ -298,12 +342,14 @@ mod tests {
         let guide = Guide::new(landings(5000)).expect("a guide");
         let guided = guide.at(DVec3::new(0.7, 0.7, 0.0));
         let there = DVec3::new(0.6, 0.0, 0.8);
-        let of = |cap: &&Cap| cap.axis == there;
-        let count = guided.caps.iter().filter(of).count();
+        let axes = guided.caps.iter().flat_map(|caps| (0..LANES).map(|lane| DVec3::from(caps.axes.map(|a| a[lane]))));
+        let (caps, count) = axes
+            .filter(|a| *a != DVec3::ZERO)
+            .fold((0, 0), |(all, those), axis| (all + 1, those + usize::from(axis == there)));
         assert!(count > 3, "{count}");
         let own = 1.0 / PI;
         // The least weight is a third of the greatest.
-        let share = count as f64 / 3.0 / guided.caps.len() as f64;
+        let share = count as f64 / 3.0 / f64::from(caps);
         let expected = guided.share * share * (1.0 - TAIL) / (PI * SQUARES[0]);
         assert!(guided.density(there, own) > expected, "{expected}");
     }
