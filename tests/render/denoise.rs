@@ -2,7 +2,7 @@
 
 use photopic::image::source::{Region, Source};
 use photopic::render::build::Built;
-use photopic::render::denoise::{Denoised, denoise};
+use photopic::render::denoise::Denoised;
 use photopic::render::film::Film;
 use photopic::render::measure::Settings;
 use predicates::str::contains;
@@ -27,9 +27,7 @@ fn filtered(built: &Built, settings: &Settings, samples: u64) -> Denoised {
     let tristimulus = &built.quantities.tristimulus;
     let mut film = Film::new(&built.scene, camera(built), settings, 0, samples, tristimulus, |_| ());
     film.survey(true);
-    let rows: Vec<usize> = (0..film.description().height).collect();
-    let records: Vec<Vec<f32>> = film.records(&rows).into_iter().map(|row| row.1).collect();
-    denoise(film.description().clone(), tristimulus, &records)
+    film.denoised().1
 }
 
 /// Luminances, row by row.

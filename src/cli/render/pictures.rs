@@ -10,7 +10,6 @@ use super::work::{self, Work};
 use crate::cli::image::{self, ImageCommand};
 use crate::cli::output::Whole;
 use crate::cli::{Failure, Talk};
-use crate::image::description::Description;
 use crate::image::format::exr;
 use crate::image::source::Source;
 use crate::render::build::Built;
@@ -128,11 +127,9 @@ impl<'a> Job<'a> {
         let (noise, price) = match state {
             None if denoises => {
                 survey(&mut film);
-                let all: Vec<usize> = (0..film.description().height).collect();
-                let (noises, rows): (Vec<Noise>, Vec<_>) = film.records(&all).into_iter().unzip();
-                let mut noise = Noise::default();
-                noises.iter().for_each(|row| noise.append(row));
-                (noise, Some(self.filter(&place, film.description(), &rows)?))
+                let (noise, mut filtered) = film.denoised();
+                self.write(&place.path, &mut filtered)?;
+                (noise, Some(filtered.price()))
             }
             None => {
                 survey(&mut film);
@@ -148,7 +145,10 @@ impl<'a> Job<'a> {
                 }
                 if denoises {
                     let (noise, rows) = state.rows(picture)?;
-                    (noise, Some(self.filter(&place, film.description(), &rows)?))
+                    let description = film.description().clone();
+                    let mut filtered = denoise(description, &self.built.quantities.tristimulus, &rows);
+                    self.write(&place.path, &mut filtered)?;
+                    (noise, Some(filtered.price()))
                 } else {
                     let mut stored = state.picture(picture, film.description().clone());
                     self.write(&place.path, &mut stored)?;
@@ -158,13 +158,6 @@ impl<'a> Job<'a> {
         };
         self.derive(&place, progress, written)?;
         Ok((noise, price))
-    }
-
-    /// Filters what was sampled and writes it.
-    fn filter(&self, place: &Place, description: &Description, rows: &[Vec<f32>]) -> Result<Price, Failure> {
-        let mut picture = denoise(description.clone(), &self.built.quantities.tristimulus, rows);
-        self.write(&place.path, &mut picture)?;
-        Ok(picture.price())
     }
 
     /// Makes the pictures for the eye of the spectral one.

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::{Film, SURVEYED};
 use crate::render::denoise::record::{Half, Layout, See};
+use crate::render::denoise::{Denoised, denoise};
 use crate::render::estimate::stream;
 use crate::render::integrator::path::PathTracer;
 use crate::render::lanes::weighted;
@@ -29,6 +30,16 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
         rows.par_iter()
             .map_init(|| self.tracer(self.way, self.guide.as_ref()).seeing(), |tracer, &y| self.record(tracer, y))
             .collect()
+    }
+
+    /// Renders the whole picture and filters it, with the noise that it has as it was sampled. For the same pictures.
+    #[must_use]
+    pub fn denoised(&self) -> (Noise, Denoised) {
+        let all: Vec<usize> = (0..self.description.height).collect();
+        let (noises, rows): (Vec<Noise>, Vec<_>) = self.records(&all).into_iter().unzip();
+        let mut noise = Noise::default();
+        noises.iter().for_each(|row| noise.append(row));
+        (noise, denoise(self.description.clone(), self.tristimulus, &rows))
     }
 
     fn record(&self, tracer: &mut PathTracer<'_>, y: usize) -> (Noise, Vec<f32>) {
