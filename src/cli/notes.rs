@@ -86,7 +86,7 @@ fn progress(paths: &[String], talk: Talk) -> ProgressBar {
 }
 
 /// A bar, hidden for short runs and where nobody watches.
-fn bar(total: u64, template: &str, worth_it: bool, talk: Talk) -> ProgressBar {
+pub(in crate::cli) fn bar(total: u64, template: &str, worth_it: bool, talk: Talk) -> ProgressBar {
     if !worth_it || talk.quiet || !io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }

@@ -23,13 +23,13 @@
 //! averaged over all of them.
 
 use super::render::{MORE, RenderError, RenderSweep, SEEDS, SHARED, SURE, turned, unique, words};
-use super::timing::interleaved;
+use super::timing::{WARM_UPS, interleaved};
 use super::{Estimate, Figure, Measure, Sweep, Trial};
 use crate::image::error::Error as ImageError;
 use crate::image::source::{Region, Source};
 use crate::math::student::{tolerance_95, two_sided_95};
 use crate::render::build::{Built, Files, Kind, build};
-use crate::render::denoise::{DARK, denoise};
+use crate::render::denoise::DARK;
 use crate::render::description::{Description, Error, Model, Render, Solver};
 use crate::render::film::Film;
 use crate::render::measure::Settings;
@@ -66,14 +66,8 @@ impl Choice {
         let mut film =
             Film::new(&self.built.scene, lens, &settings, instrument, self.render.samples, tristimulus, |_| ());
         film.survey(self.render.adaptive);
-        if self.built.denoises {
-            let rows: Vec<usize> = (0..film.description().height).collect();
-            let rows: Vec<Vec<f32>> = film.records(&rows).into_iter().map(|(_, row)| row).collect();
-            luminances(&mut denoise(film.description().clone(), tristimulus, &rows))
-        } else {
-            luminances(&mut film)
-        }
-        .expect("what is in memory can be read")
+        if self.built.denoises { luminances(&mut film.denoised().1) } else { luminances(&mut film) }
+            .expect("what is in memory can be read")
     }
 
     fn words(&self) -> Vec<String> {
@@ -142,7 +136,8 @@ impl Reference {
     }
 }
 
-/// Tries the picture of a camera, by its place among the sensors, with `repeats` seeds (at least 5) for each choice of settings.
+/// Tries the picture of a camera, by its place among the sensors, with `repeats` seeds (at least 5) for each choice of settings; `progress` is told how many
+/// renders are done, and of how many.
 ///
 /// # Errors
 /// [`RenderError`]: mistakes in the scene, or too few samples.
@@ -155,6 +150,7 @@ pub fn sweep(
     files: &dyn Files,
     repeats: usize,
     camera: usize,
+    mut progress: impl FnMut(usize, usize),
 ) -> Result<RenderSweep, RenderError> {
     let own = Render { solver: Solver::Path, max_edges: None, denoise: None, ..description.render.clone() };
     if own.samples < LEAST {
@@ -167,7 +163,11 @@ pub fn sweep(
     let reference = Reference::new(seeds.map(|seed| best.run(camera, seed)));
     let choices = choices(&own).into_iter().map(make).collect::<Result<Vec<_>, _>>()?;
     let mut errors = vec![Vec::new(); choices.len()];
-    let timings = interleaved(choices.len(), repeats.max(5), |i| {
+    let repeats = repeats.max(5);
+    let (mut done, all) = (0, choices.len() * (WARM_UPS + repeats));
+    let timings = interleaved(choices.len(), repeats, |i| {
+        progress(done, all);
+        done += 1;
         let seed = own.seed.wrapping_add(SEEDS * (errors[i].len() as u64 + 1));
         errors[i].push(reference.error(&choices[i].run(camera, seed)));
         Ok::<_, RenderError>(())

@@ -22,7 +22,7 @@
 //! and bias alike; its upper end is the tolerance limit |b̄| + k s, below which 95 % of other runs stay. As the fastest of some 25 settings is
 //! recommended, and luck is one way to be it, each limit holds with a confidence of 99.8 %: all of them at once in 95 % of sweeps.
 
-use super::timing::interleaved;
+use super::timing::{WARM_UPS, interleaved};
 use super::{Estimate, Figure, Measure, Sweep, Trial};
 use crate::math::student::{tolerance_95, two_sided_95};
 use crate::render::bands::RANGE_NM;
@@ -154,7 +154,7 @@ pub(super) fn words(render: &Render, built: &Built) -> [String; 7] {
     ]
 }
 
-/// Tries a scene with `repeats` seeds (at least 5) for each choice of settings.
+/// Tries a scene with `repeats` seeds (at least 5) for each choice of settings; `progress` is told how many renders are done, and of how many.
 ///
 /// # Errors
 /// [`RenderError`]: mistakes in the scene, or no meter in it.
@@ -163,6 +163,7 @@ pub fn sweep(
     description: &Description,
     files: &dyn Files,
     repeats: usize,
+    mut progress: impl FnMut(usize, usize),
 ) -> Result<RenderSweep, RenderError> {
     let own = Render { solver: Solver::Path, max_edges: None, ..description.render.clone() };
     let make = |render: Render| Choice::new(text, description, files, render);
@@ -180,7 +181,11 @@ pub fn sweep(
     let figures = figures.collect();
     let choices = choices(&own).into_iter().map(make).collect::<Result<Vec<_>, _>>()?;
     let mut values = vec![Vec::new(); choices.len()];
-    let timings = interleaved(choices.len(), repeats.max(5), |i| {
+    let repeats = repeats.max(5);
+    let (mut done, all) = (0, choices.len() * (WARM_UPS + repeats));
+    let timings = interleaved(choices.len(), repeats, |i| {
+        progress(done, all);
+        done += 1;
         let seed = own.seed.wrapping_add(SEEDS * (values[i].len() as u64 + 1));
         values[i].push(choices[i].run(seed));
         Ok::<_, RenderError>(())

@@ -7,6 +7,9 @@ use serde::Serialize;
 /// A run shorter than this is repeated within one measurement, for the clock's sake.
 const SHORTEST: Duration = Duration::from_micros(200);
 
+/// Runs of each that are not measured.
+pub const WARM_UPS: usize = 2;
+
 /// How long a run took.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
@@ -34,7 +37,7 @@ impl Timing {
     }
 }
 
-/// Times runs side by side: a warm-up of each, then `repeats` rounds in which every run has its turn; every other round goes
+/// Times runs side by side: [`WARM_UPS`] of each, then `repeats` rounds in which every run has its turn; every other round goes
 /// backwards. A run is given its own number and returns what keeps the compiler from leaving its work out.
 ///
 /// # Errors

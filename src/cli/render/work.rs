@@ -4,14 +4,14 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use super::settings::Settings;
 use super::state::{self, State};
 use super::{audits, files, pictures, sheets};
-use crate::cli::notes::Notes;
+use crate::cli::notes::{Notes, bar};
 use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
@@ -335,15 +335,7 @@ impl Work {
     }
 }
 
-/// A bar for what takes long; hidden where nobody watches.
+/// A bar for what takes long.
 pub(super) fn progress(samples: u64, talk: Talk) -> ProgressBar {
-    use std::io::IsTerminal;
-    if talk.quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(samples);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
+    bar(samples, "{bar:40} {percent} %, {eta} left", true, talk)
 }

@@ -5,6 +5,7 @@ use serde_json::json;
 
 use super::output::{Asked, Traded, settings_file};
 use super::target::place;
+use crate::cli::notes::bar;
 use crate::cli::render::Scene;
 use crate::cli::{Failure, Talk};
 use crate::render::description::sensor::Sensor;
@@ -59,10 +60,16 @@ pub(super) fn trade(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         None => None,
     };
     let (text, repeats) = (&scene.text, asked.repeats as usize);
-    let found = match camera {
-        Some(camera) => picture::sweep(text, &description, &scene, repeats, camera),
-        None => render::sweep(text, &description, &scene, repeats),
+    let bar = bar(0, "{bar:40} {pos}/{len} renders, {eta} left", true, talk);
+    let progress = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
     };
+    let found = match camera {
+        Some(camera) => picture::sweep(text, &description, &scene, repeats, camera, progress),
+        None => render::sweep(text, &description, &scene, repeats, progress),
+    };
+    bar.finish_and_clear();
     let found = found.map_err(|e| Failure::Message(format!("{path}:{e}")))?;
     let first = found.sweep.figures.first().map_or_else(String::new, |f| f.key.to_string());
     let figure = arguments.sensor.clone().unwrap_or(first);
