@@ -26,7 +26,7 @@ const PACKETS: [u64; 2] = [1 << 16, 1 << 23];
 const ENOUGH: usize = 1 << 20;
 /// One landing of so many packets is too few, after twice as many: others do not look for more.
 const RARE: u64 = 4096;
-/// One of so many packets tells of what comes straight from diffuse surfaces: of that only the flux counts, and in bright rooms it is much.
+/// Of so many packets one tells of what comes straight from diffuse surfaces: of that only the flux counts, and in bright rooms it is much.
 const PLAIN: u64 = 16;
 
 /// Whether there is anything to be guided: a surface that is not polished, and one that is.
@@ -47,6 +47,9 @@ pub fn learn(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -
 pub fn landings(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64) -> Landings {
     let shares = Shares::new(scene.lights(), scene.bands().len());
     let per_stream = wanted.clamp(PACKETS[0], PACKETS[1]).div_ceil(ROUNDS * STREAMS as u64);
+    // The first of each round: points of nets that follow one another are spread evenly, every sixteenth are not.
+    let whole = per_stream.div_ceil(PLAIN);
+    let counts = per_stream as f64 / whole as f64;
     let mut found = Landings::default();
     for round in 0..ROUNDS {
         let parts: Vec<Landings> = (0..STREAMS)
@@ -56,7 +59,7 @@ pub fn landings(scene: &Scene, settings: &Settings, instrument: u64, wanted: u64
                 let mut sampler = settings.sampler(stream(instrument, number));
                 for index in round * per_stream..(round + 1) * per_stream {
                     sampler.start(index);
-                    learner.packet(&mut sampler, index % PLAIN == 0);
+                    learner.packet(&mut sampler, (index % per_stream < whole).then_some(counts));
                 }
                 learner.landings
             })
@@ -114,8 +117,8 @@ impl<'a> Learner<'a> {
         2.0 * pdf
     }
 
-    /// Follows a packet; `whole` if it tells of what comes straight from diffuse surfaces as well.
-    fn packet(&mut self, sampler: &mut Sampler, whole: bool) {
+    /// Follows a packet; `counts`, where it tells of what comes straight from diffuse surfaces as well: for how many packets.
+    fn packet(&mut self, sampler: &mut Sampler, counts: Option<f64>) {
         let Some((mut ray, origin)) = self.packet.emit(sampler) else { return };
         // Whether the last surfaces were polished, and whether a path may meet what is before them.
         let (mut polished, mut met, mut weight) = (false, false, 1.0);
@@ -134,10 +137,10 @@ impl<'a> Learner<'a> {
                 vertex.material.evaluate(vertex.arriving, up, Transport::Radiance, &mut self.value);
                 let seen = self.value.iter().any(|v| *v > 0.0);
                 let landing = Landing { position: vertex.point.position, back: vertex.back, weight };
-                match (seen, polished) {
-                    (true, true) => self.landings.polished.push(landing),
-                    (true, false) if whole => {
-                        self.landings.plain.push(Landing { weight: PLAIN as f64 * weight, ..landing });
+                match (seen, polished, counts) {
+                    (true, true, _) => self.landings.polished.push(landing),
+                    (true, false, Some(counts)) => {
+                        self.landings.plain.push(Landing { weight: counts * weight, ..landing });
                     }
                     _ => {}
                 }

@@ -70,7 +70,7 @@ pub struct Landing {
 pub struct Landings {
     /// Over polished surfaces, from a diffuse surface or from a light that a path can meet.
     pub polished: Vec<Landing>,
-    /// Straight from another surface that is not polished.
+    /// Straight from another surface that is not polished: of some packets, each of which counts for more.
     pub plain: Vec<Landing>,
 }
 
