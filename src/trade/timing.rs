@@ -7,7 +7,7 @@ use serde::Serialize;
 /// A run shorter than this is repeated within one measurement, for the clock's sake.
 const SHORTEST: Duration = Duration::from_micros(200);
 
-/// Runs of each that are not measured.
+/// Runs of each before those that are measured, in [`interleaved`]: one to warm up, one to see how long it takes.
 pub const WARM_UPS: usize = 2;
 
 /// How long a run took.
