@@ -137,7 +137,8 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             progress,
             noise: Noise::default(),
             shares: None,
-            source: (settings.virtual_lights != Some(false) && !settings.packets)
+            // A few samples are not tried with them.
+            source: (settings.virtual_lights.unwrap_or(samples >= SURVEY) && !settings.packets)
                 .then(|| virtual_lights::Source::of(scene, &settings.limits))
                 .flatten(),
             way: Way { virtual_lights: settings.virtual_lights == Some(true), branches },

@@ -131,20 +131,22 @@ impl Mesh {
         open.push(0..data.triangles.len());
         while let Some(range) = open.pop() {
             let triangles = &mut data.triangles[range.clone()];
-            let bounds = triangles.par_iter().map(of).reduce(|| Bounds::EMPTY, Bounds::union);
+            let all = |boxes: &[Bounds]| boxes.par_iter().copied().reduce(|| Bounds::EMPTY, Bounds::union);
             if triangles.len() > most {
                 // Halved across its longest side.
+                let bounds = triangles.par_iter().map(of).reduce(|| Bounds::EMPTY, Bounds::union);
                 let axis = (bounds.max - bounds.min).max_position();
                 let place = |t: &[u32; 3]| t.iter().map(|&corner| positions[corner as usize][axis]).sum::<f64>();
                 let half = triangles.len() / 2;
                 triangles.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)));
                 open.extend([range.start + half..range.end, range.start..range.start + half]);
             } else if !triangles.is_empty() {
-                let mut tree = Tree::new(&triangles.par_iter().map(of).collect::<Vec<_>>());
+                let own: Vec<Bounds> = triangles.par_iter().map(of).collect();
+                let mut tree = Tree::new(&own);
                 let renumbered: Vec<_> = tree.renumber().into_par_iter().map(|i| triangles[i as usize]).collect();
                 triangles.copy_from_slice(&renumbered);
                 blocks.push(Block { first: range.start, tree });
-                boxes.push(bounds);
+                boxes.push(all(&own));
             }
         }
         let corners = Corners::new(&data.positions, &data.triangles);

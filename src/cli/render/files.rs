@@ -92,21 +92,29 @@ impl Files for Scene {
         let path = self.path(file);
         let bytes = fs::read(&path).map_err(|e| format!("{path}: cannot be read: {e}; expected a mesh"))?;
         let wrong = |e: mesh::Error| format!("{path}:{e}");
-        let objects = match Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
-            Some("obj") => mesh::obj::read(&bytes).map_err(wrong)?,
-            Some("ply") => vec![mesh::ply::read(&bytes).map_err(wrong)?],
-            Some("gltf" | "glb") => {
-                let beside = |name: &str| {
-                    let own = beside(&path, name);
-                    let bytes = fs::read(&own).map_err(|e| format!("{own}: cannot be read: {e}"))?;
-                    self.note(Input { path: own, sha256: checksum(&bytes) });
-                    Ok(bytes)
-                };
-                mesh::gltf::read(&bytes, beside).map_err(wrong)?
-            }
-            _ => return Err(format!("{path}: expected a mesh whose name ends in .ply, .obj, .gltf or .glb")),
+        let read = || {
+            Ok(match Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+                Some("obj") => mesh::obj::read(&bytes).map_err(wrong)?,
+                Some("ply") => vec![mesh::ply::read(&bytes).map_err(wrong)?],
+                Some("gltf" | "glb") => {
+                    let beside = |name: &str| {
+                        let own = beside(&path, name);
+                        let bytes = fs::read(&own).map_err(|e| format!("{own}: cannot be read: {e}"))?;
+                        self.note(Input { path: own, sha256: checksum(&bytes) });
+                        Ok(bytes)
+                    };
+                    mesh::gltf::read(&bytes, beside).map_err(wrong)?
+                }
+                _ => return Err(format!("{path}: expected a mesh whose name ends in .ply, .obj, .gltf or .glb")),
+            })
         };
-        self.note(Input { path, sha256: checksum(&bytes) });
+        // Of a large file the checksum takes about as long as the triangles.
+        let (objects, sha256) = std::thread::scope(|scope| {
+            let sum = scope.spawn(|| checksum(&bytes));
+            (read(), sum.join().expect("a checksum of bytes does not panic"))
+        });
+        let objects = objects?;
+        self.note(Input { path, sha256 });
         Ok(objects)
     }
 

@@ -67,8 +67,9 @@ impl Builder<'_> {
                 Some(wanted) => self.named(materials, wanted)?,
             };
             let faces = self.faces(shape, number)?;
-            let area: f64 = faces.iter().map(|f| f.area()).sum();
-            if let Some(e) = shape.emission.as_ref().filter(|_| !area.is_finite()) {
+            // Asked for where it is needed: that of a mesh is added up over all triangles.
+            let area = || faces.iter().map(|f| f.area()).sum::<f64>();
+            if let Some(e) = shape.emission.as_ref().filter(|_| !area().is_finite()) {
                 return Err(self.wrong(&e.span(), "a plane without bounds that emits; expected a shape of finite area"));
             }
             ranges.push(parts.len()..parts.len() + faces.len());
@@ -77,7 +78,7 @@ impl Builder<'_> {
                 Some(e) if e.get_ref().lamp.is_some() => {
                     Some(Arc::new(self.lamp_emission(shape, e, &faces, bands, quantities)?))
                 }
-                Some(e) => Some(Arc::new(self.emission(e.get_ref(), &e.span(), area, bands, quantities)?)),
+                Some(e) => Some(Arc::new(self.emission(e.get_ref(), &e.span(), area(), bands, quantities)?)),
             };
             parts.extend(faces.into_iter().map(|shape| Part {
                 shape,

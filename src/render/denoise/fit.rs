@@ -10,8 +10,6 @@
 //! Reference: B. Bitterli, F. Rousselle, B. Moon, J. A. Iglesias-Guitián, D. Adler, K. Mitchell, W. Jarosz, J. Novák, *Nonlinearly Weighted
 //! First-order Regression for Denoising Monte Carlo Renderings*, Computer Graphics Forum 35(4) (2016), sec. 4.
 
-use nalgebra::{SMatrix, SVector};
-
 use super::record::{FEATURES, narrow};
 use super::tile::{TILE, Tile};
 
@@ -22,6 +20,10 @@ const RIDGE: f64 = 1e-3;
 
 /// Sums that a pixel has.
 const SUMS: usize = UNKNOWNS * (UNKNOWNS + 1) / 2;
+/// Pixels that are solved for together: numbers of so many fill the widest register.
+const LANES: usize = 8;
+/// A number of each of them.
+type Lanes = [f64; LANES];
 
 /// The fits of a tile.
 pub(super) struct Fits {
@@ -66,11 +68,21 @@ impl Fits {
     }
 
     /// Solves them.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn solve(&mut self) {
-        for i in 0..TILE {
-            let solution = solve(|pair| f64::from(self.sums[pair][i]));
-            self.solutions.iter_mut().zip(solution).for_each(|(all, s)| all[i] = narrow(s));
+        for first in (0..TILE).step_by(LANES) {
+            let mut sums = [[0.0; LANES]; SUMS];
+            for (sum, all) in sums.iter_mut().zip(&self.sums) {
+                for i in 0..LANES {
+                    sum[i] = f64::from(all[first + i]);
+                }
+            }
+            let solutions = solve(sums);
+            for (all, solution) in self.solutions.iter_mut().zip(&solutions) {
+                for i in 0..LANES {
+                    all[first + i] = narrow(solution[i]);
+                }
+            }
         }
     }
 
@@ -96,32 +108,78 @@ fn index(j: usize, k: usize) -> usize {
     j * (j + 1) / 2 + k
 }
 
-/// s of a pixel, given the sums; 0 without neighbours.
-fn solve(sum: impl Fn(usize) -> f64) -> [f64; UNKNOWNS] {
-    let mut solution = [0.0; UNKNOWNS];
-    let total = sum(0);
-    if total <= 0.0 {
-        return solution;
-    }
-    // Scaled so that the diagonal is 1: features have different units. What does not vary says nothing.
-    let scale: [f64; UNKNOWNS] = std::array::from_fn(|k| {
-        let square = sum(index(k, k));
-        if square > 0.0 { square.sqrt().recip() } else { 0.0 }
-    });
-    let matrix = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_fn(|j, k| match j == k {
-        true if j == 0 => 1.0,
-        true => 1.0 + RIDGE,
-        false => scale[j] * scale[k] * sum(index(j.max(k), j.min(k))),
-    });
-    let mut right = SVector::<f64, UNKNOWNS>::zeros();
-    right[0] = scale[0];
-    match matrix.cholesky() {
-        Some(factor) => {
-            let scaled = factor.solve(&right);
-            solution.iter_mut().zip(scaled.iter().zip(scale)).for_each(|(s, (v, scale))| *s = v * scale);
+/// s of some pixels, given their sums; 0 without neighbours. By Cholesky's factors of M, scaled so that its diagonal is 1, as features have
+/// different units. What does not vary says nothing.
+#[inline(always)]
+fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
+    let total = sums[0];
+    let mut scale = [[0.0; LANES]; UNKNOWNS];
+    for k in 0..UNKNOWNS {
+        let square = sums[index(k, k)];
+        for i in 0..LANES {
+            scale[k][i] = if square[i] > 0.0 { square[i].sqrt().recip() } else { 0.0 };
         }
-        // Rounded away: the plain mean.
-        None => solution[0] = 1.0 / total,
+    }
+    for j in 0..UNKNOWNS {
+        for k in 0..j {
+            for i in 0..LANES {
+                sums[index(j, k)][i] *= scale[j][i] * scale[k][i];
+            }
+        }
+        sums[index(j, j)] = [if j == 0 { 1.0 } else { 1.0 + RIDGE }; LANES];
+    }
+    // M = L Lᵀ, L in the place of M but for its diagonal, of which the inverse is kept.
+    let (mut inverse, mut sound) = ([[0.0; LANES]; UNKNOWNS], [true; LANES]);
+    for j in 0..UNKNOWNS {
+        for k in 0..=j {
+            let mut left = sums[index(j, k)];
+            for l in 0..k {
+                for i in 0..LANES {
+                    left[i] -= sums[index(j, l)][i] * sums[index(k, l)][i];
+                }
+            }
+            if k < j {
+                for i in 0..LANES {
+                    sums[index(j, k)][i] = left[i] * inverse[k][i];
+                }
+            } else {
+                for i in 0..LANES {
+                    sound[i] &= left[i] > 0.0;
+                    inverse[j][i] = left[i].sqrt().recip();
+                }
+            }
+        }
+    }
+    // L y = e₀, Lᵀ s = y.
+    let mut solution = [[0.0; LANES]; UNKNOWNS];
+    solution[0] = scale[0];
+    for j in 0..UNKNOWNS {
+        for k in 0..j {
+            for i in 0..LANES {
+                solution[j][i] -= sums[index(j, k)][i] * solution[k][i];
+            }
+        }
+        for i in 0..LANES {
+            solution[j][i] *= inverse[j][i];
+        }
+    }
+    for j in (0..UNKNOWNS).rev() {
+        for k in j + 1..UNKNOWNS {
+            for i in 0..LANES {
+                solution[j][i] -= sums[index(k, j)][i] * solution[k][i];
+            }
+        }
+        for i in 0..LANES {
+            solution[j][i] *= inverse[j][i];
+        }
+    }
+    for j in 0..UNKNOWNS {
+        for i in 0..LANES {
+            // Rounded away: the plain mean.
+            let mean = if j == 0 { 1.0 / total[i] } else { 0.0 };
+            let found = if sound[i] { solution[j][i] * scale[j][i] } else { mean };
+            solution[j][i] = if total[i] > 0.0 { found } else { 0.0 };
+        }
     }
     solution
 }

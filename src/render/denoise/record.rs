@@ -94,12 +94,18 @@ impl Half {
         &self.luminance
     }
 
-    /// Writes the means of half number `half` at column `x` of a record of `width` pixels.
-    pub(in crate::render) fn write(&self, layout: Layout, half: usize, x: usize, width: usize, record: &mut [f32]) {
-        let count = self.luminance.count;
-        let means = self.bands.iter().chain(&self.features).map(|sum| sum / count.max(1.0));
-        let numbers = (layout.band(half)..).zip(means.chain([self.luminance.variance(), count]));
-        numbers.for_each(|(channel, number)| record[channel * width + x] = narrow(number));
+    /// Writes the means of half number `half` of a row of pixels into its record.
+    pub(in crate::render) fn write(row: &[Self], layout: Layout, half: usize, record: &mut [f32]) {
+        // Channel by channel: those of a pixel stand far apart.
+        let mut put = |channel: usize, number: &dyn Fn(&Self) -> f64| {
+            let places = &mut record[channel * row.len()..][..row.len()];
+            places.iter_mut().zip(row).for_each(|(place, pixel)| *place = narrow(number(pixel)));
+        };
+        let mean = |pixel: &Self, sum: f64| sum / pixel.luminance.count.max(1.0);
+        (0..layout.bands).for_each(|band| put(layout.band(half) + band, &|pixel| mean(pixel, pixel.bands[band])));
+        (0..FEATURES).for_each(|f| put(layout.feature(half) + f, &|pixel| mean(pixel, pixel.features[f])));
+        put(layout.variance(half), &|pixel| pixel.luminance.variance());
+        put(layout.count(half), &|pixel| pixel.luminance.count);
     }
 }
 

@@ -37,9 +37,15 @@ impl Window {
         // Columns are counted from where those about the first tile begin, which lies to the left of the picture.
         let (left, right) = (first.max(REACH), (first + TILE + 2 * REACH).min(records.width + REACH));
         for (row, out) in (y..).zip(&mut self.rows) {
-            *out = [0.0; TILE + 2 * REACH];
-            if let Some(row) = row.checked_sub(REACH).filter(|row| *row < records.rows.len()) {
-                let own = &records.channel(row, channel)[left - REACH..right - REACH];
+            let Some(row) = row.checked_sub(REACH).filter(|row| *row < records.rows.len()) else {
+                *out = [0.0; TILE + 2 * REACH];
+                continue;
+            };
+            let own = &records.channel(row, channel)[left - REACH..right - REACH];
+            if let Some(whole) = own.first_chunk() {
+                *out = *whole;
+            } else {
+                *out = [0.0; TILE + 2 * REACH];
                 out[left - first..][..own.len()].copy_from_slice(own);
             }
         }

@@ -64,7 +64,7 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
                 pixels[x].add(luminance);
             });
             together += noise.variance();
-            halves.iter().enumerate().for_each(|(x, sums)| sums.write(layout, half, x, width, &mut record));
+            Half::write(&halves, layout, half, &mut record);
         }
         (0..width).for_each(|x| self.look(tracer, x, y).write(layout, x, width, &mut record));
         let mut noise = Noise::default();
