@@ -6,12 +6,13 @@
 The neutral JSON scenes are written as TOML for photopic, without polarisation, which neither the references nor Mitsuba's renders of them know (with it
 light in the prism differs from theirs by a relMSE of 0.013); the picture's tristimulus values are compared with the two high-sample references
 there: the mean of (x − r1)(x − r2) is an unbiased estimate of the squared error, relative to r² + (0.01 mean)². Printed are the seconds of
-the whole command, the relative error of luminance, and the seconds to an error of 1e-3 if it falls as 1/N. With --mitsuba, Mitsuba's LLVM spectral
-variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md).
+the whole command, the relative error of luminance, and the seconds to an error of 1e-3 if it falls as 1/N; below it those of the rendering alone, without
+reading the scene, writing the picture and the audits (`seconds_of` in the JSON). With --mitsuba, Mitsuba's LLVM spectral
+variant renders the same scenes with its multijitter sampler in the same run (it needs DRJIT_LIBLLVM_PATH, see ../shared/README.md): its render call alone.
 With --bands the error is that of the 30 bands of 10 nm from 400 to 700 nm instead: half the mean squared difference of two renders, relative to
 r² + (0.01 mean)² of a render of eight times the samples by photopic; printed are the median over the bands and their range.
-With --whole each program is also timed as its user waits for it, from the command to the picture on disk: Mitsuba's start, loading and compiling
-included; and of photopic's what reading the scene takes (`render --check`), which Mitsuba's render call does not contain.
+With --whole Mitsuba is also timed as its user waits for it, from the command to the picture on disk, its start, loading and compiling included: with as
+many samples, and what that is with those that an error of 1e-3 takes.
 With --denominators N errors are relative to a picture of N samples a pixel by photopic, in place of the references' mean, where that is noisy itself
 (the prism's are: a relMSE of 0.023 each, so that not even the truth has less than 0.0085). What is compared stays the references.
 With --denoise photopic's pictures are also filtered (`--denoise`), at 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
@@ -38,6 +39,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared" / "render"
 # From the references' unit to cd/m²: the observer's sum times K_m (../shared/README.md).
 CANDELA = 106.75026 * 683.002
+# The name of photopic's seconds without reading, writing and audits.
+ALONE = "rendering"
 # Middles of bands of 10 nm.
 BANDS_NM = np.arange(405, 696, 10)
 SELLMEIER = "dielectric = {{ sellmeier = {{ b = {b}, c_um2 = {c} }} }}"
@@ -114,19 +117,19 @@ def errors(xyz, name, relative_to=None):
 
 
 def ours(binary, name, samples, step_nm, adaptive, solver, channels=("X", "Y", "Z"), seed=0, options=()):
+    """Seconds of the whole command and of the rendering alone, and the channels of the picture."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder)
         (path / "scene.toml").write_text(scene(name, step_nm, adaptive, solver))
-        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "--seed", str(seed), "-o", "out.txt", *options]
+        command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "--seed", str(seed), "--json", "-o", "out.json", *options]
         start = time.perf_counter()
         subprocess.run(command, cwd=folder, check=True)
         seconds = time.perf_counter() - start
-        if channels is None:
-            return seconds, None
+        rendering = json.loads((path / "out.json").read_text())["results"][0]["seconds_of"]["rendering"]
         with OpenEXR.File(str(path / "view.exr"), separate_channels=True) as file:
             stored = file.channels()
             pixels = np.stack([stored[c].pixels for c in channels], axis=-1).astype(float)
-    return seconds, pixels
+    return np.array([seconds, rendering]), pixels
 
 
 def mitsuba_scene(name, samples):
@@ -163,7 +166,7 @@ def mitsuba(name, samples, bands=False, seed=2):
     np.array(mi.render(loaded, spp=samples, seed=1))
     start = time.perf_counter()
     pixels = np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
-    return time.perf_counter() - start, pixels
+    return np.array([time.perf_counter() - start]), pixels
 
 
 def band_errors(render, reference):
@@ -183,10 +186,11 @@ def compare_bands(binary, name, arguments):
     if arguments.mitsuba:
         rows.append(("mitsuba", *band_errors(lambda seed: mitsuba(name, arguments.samples, True, seed), reference)))
     for program, seconds, error in rows:
-        to = seconds * error / 1e-3
-        print(f"{name:12} {program:13} {seconds:8.2f} {np.median(error):10.5f} {np.median(to):10.2f} {to.min():8.2f} to {to.max():.2f}", flush=True)
+        for what, seconds in zip((program, ALONE), seconds):
+            to = seconds * error / 1e-3
+            print(f"{name:12} {what:13} {seconds:8.2f} {np.median(error):10.5f} {np.median(to):10.2f} {to.min():8.2f} to {to.max():.2f}", flush=True)
     if arguments.mitsuba:
-        ratio = rows[1][1] * rows[1][2] / (rows[0][1] * rows[0][2])
+        ratio = rows[1][1][0] * rows[1][2] / (rows[0][1][0] * rows[0][2])
         print(f"{name:12} {'ratio':13} {'':19} {np.median(ratio):10.2f} {ratio.min():8.2f} to {ratio.max():.2f}", flush=True)
     if arguments.denoise:
         # Filtered pictures have a bias: two references that know nothing of one another give the squared error with it.
@@ -201,14 +205,12 @@ def compare_bands(binary, name, arguments):
         denoised(name, lambda samples: render(samples, 0, ["--denoise"]), judge)
 
 
-def whole(binary, name, arguments):
-    """Prints what a user waits for."""
-    seconds, _ = ours(binary, name, 16, arguments.step_nm, False, "path", options=["--check"], channels=None)
-    print(f"{name:12} {'reading alone':13} {seconds:8.2f}", flush=True)
-    if arguments.mitsuba:
-        start = time.perf_counter()
-        subprocess.run([sys.executable, __file__, "--once", "--scenes", name, "--samples", str(arguments.samples)], check=True)
-        print(f"{name:12} {'mitsuba whole':13} {time.perf_counter() - start:8.2f}", flush=True)
+def whole(name, samples, call, error):
+    """Prints what a user of Mitsuba waits for, whose render call takes so long and has such an error."""
+    start = time.perf_counter()
+    subprocess.run([sys.executable, __file__, "--once", "--scenes", name, "--samples", str(samples)], check=True)
+    seconds = time.perf_counter() - start
+    print(f"{name:12} {'whole':13} {seconds:8.2f} {error:10.5f} {seconds - call + call * error / 1e-3:10.2f}", flush=True)
 
 
 def once(name, samples):
@@ -229,17 +231,19 @@ def denoised(name, run, judge):
         off, beside = judge(pixels)
         seconds.append(spent)
         error.append(off)
-        print(f"{name:12} {f'denoised, {samples}':13} {spent:8.2f} {off:10.5f} {'':10} {beside}", flush=True)
+        print(f"{name:12} {f'denoised, {samples}':13} {spent[0]:8.2f} {off:10.5f} {'':10} {beside}", flush=True)
+        print(f"{name:12} {ALONE:13} {spent[1]:8.2f}", flush=True)
         if error[-1] < 1e-3:
             break
     else:
         print(f"{name:12} {'denoised':13} not reached", flush=True)
         return
-    if len(error) == 1:
-        print(f"{name:12} {'denoised':13} {'':8} {'':10} at most {seconds[0]:.2f}", flush=True)
-        return
-    at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
-    print(f"{name:12} {'denoised':13} {'':8} {'':10} {at:10.2f}", flush=True)
+    for what, seconds in zip(("denoised", ALONE), np.transpose(seconds)):
+        if len(error) == 1:
+            print(f"{name:12} {what:13} {'':8} {'':10} at most {seconds[0]:.2f}", flush=True)
+            continue
+        at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
+        print(f"{name:12} {what:13} {'':8} {'':10} {at:10.2f}", flush=True)
 
 
 def main():
@@ -252,7 +256,7 @@ def main():
     parser.add_argument("--solvers", default="path", help="photopic's, such as path,bidirectional")
     parser.add_argument("--seeds", type=int, default=1, help="renders of each, whose errors are averaged: where few pixels hold most of it one says little")
     parser.add_argument("--mitsuba", action="store_true")
-    parser.add_argument("--whole", action="store_true", help="what a user waits for as well: start, reading, compiling, writing")
+    parser.add_argument("--whole", action="store_true", help="what a user of Mitsuba waits for as well: start, reading, compiling, writing")
     parser.add_argument("--once", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--denominators", type=int, default=0, help="errors relative to a picture of so many samples by photopic")
     parser.add_argument("--denoise", action="store_true", help="photopic's filtered pictures as well, of as many samples as they need")
@@ -271,8 +275,6 @@ def main():
         if arguments.bands:
             compare_bands(binary, name, arguments)
             continue
-        if arguments.whole:
-            whole(binary, name, arguments)
         relative_to = None
         if arguments.denominators:
             relative_to = ours(binary, name, arguments.denominators, arguments.step_nm, not arguments.even, "path", seed=10**6)[1] / CANDELA
@@ -285,13 +287,15 @@ def main():
             for seed in range(arguments.seeds):
                 seconds, xyz = run(seed)
                 error, mean = errors(xyz if program == "mitsuba" else xyz / CANDELA, name, relative_to)
-                found.append((seconds, error[1], mean[1]))
-            seconds, error, mean = np.mean(found, axis=0)
-            to = seconds * error / 1e-3
-            print(f"{name:12} {program:13} {seconds:8.2f} {error:10.5f} {to:10.2f} {100 * mean:10.3f} %", flush=True)
+                found.append((error[1], mean[1], *seconds))
+            error, mean, *seconds = np.mean(found, axis=0)
+            for what, seconds in zip((program, ALONE), seconds):
+                print(f"{name:12} {what:13} {seconds:8.2f} {error:10.5f} {seconds * error / 1e-3:10.2f} {100 * mean:10.3f} %", flush=True)
             if arguments.seeds > 1:
-                each = np.array(found)[:, 1]
+                each = np.array(found)[:, 0]
                 print(f"{'':12} {'':13} {'':8} {each.min():10.5f} to {each.max():.5f}", flush=True)
+            if arguments.whole and program == "mitsuba":
+                whole(name, arguments.samples, seconds, error)
         if arguments.denoise:
             render = lambda samples, name=name: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", options=["--denoise"])
 

@@ -271,14 +271,35 @@ pub fn grid_csv(points: &Points, quantity: &str, unit: &str) -> String {
     out
 }
 
+/// What a render took, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seconds {
+    /// All of it.
+    pub total: f64,
+    /// Reading and preparing the scene.
+    pub scene: f64,
+    /// Sampling, and what is left beside the others.
+    pub rendering: f64,
+    /// Packing and writing pictures, and making those for the eye.
+    pub writing: f64,
+    /// Looking where the energy goes and what the solver leaves out.
+    pub audits: f64,
+}
+
 /// The result of a render, one object of `results`.
 #[must_use]
-pub fn result(built: &Built, readings: &[Reading], written: &[String], seconds: f64) -> Value {
+pub fn result(built: &Built, readings: &[Reading], written: &[String], seconds: &Seconds) -> Value {
     json!({
         "sensors": readings.iter().map(sensor).collect::<Vec<_>>(),
         "model": model(built),
         "written": written,
-        "seconds": seconds,
+        "seconds": seconds.total,
+        "seconds_of": {
+            "scene": seconds.scene,
+            "rendering": seconds.rendering,
+            "writing": seconds.writing,
+            "audits": seconds.audits,
+        },
     })
 }
 

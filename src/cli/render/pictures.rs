@@ -1,6 +1,8 @@
 //! The pictures of a camera: the spectral one, and those made of it.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use indicatif::ProgressBar;
@@ -10,8 +12,11 @@ use super::work::{self, Work};
 use crate::cli::image::{self, ImageCommand};
 use crate::cli::output::Whole;
 use crate::cli::{Failure, Talk};
+use crate::finding::Finding;
+use crate::image::description::Description;
+use crate::image::error::Error;
 use crate::image::format::exr;
-use crate::image::source::Source;
+use crate::image::source::{Region, Source};
 use crate::render::build::Built;
 use crate::render::denoise::{Price, denoise};
 use crate::render::description::sensor::Camera as Described;
@@ -37,6 +42,35 @@ pub(super) struct Job<'a> {
     pub talk: Talk,
     /// Only a share is rendered: into the state, and no picture is written.
     pub is_part: bool,
+    /// Is told what writing takes.
+    pub writing: &'a Cell<Duration>,
+}
+
+/// A picture, and what reading it took: one that is rendered as it is read is not yet written.
+struct Timed<'a> {
+    source: &'a mut dyn Source,
+    reading: Duration,
+}
+
+impl Source for Timed<'_> {
+    fn description(&self) -> &Description {
+        self.source.description()
+    }
+
+    fn block(&self) -> (usize, usize) {
+        self.source.block()
+    }
+
+    fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), Error> {
+        let begun = Instant::now();
+        let read = self.source.read(region, channels, out);
+        self.reading += begun.elapsed();
+        read
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        self.source.findings()
+    }
 }
 
 /// The verbs of `image`, to make pictures as a user would.
@@ -83,6 +117,7 @@ impl<'a> Job<'a> {
             inputs: &work.read,
             talk: job.talk,
             is_part: job.share != Share::WHOLE,
+            writing: &work.writing,
         }
     }
 
@@ -165,6 +200,7 @@ impl<'a> Job<'a> {
         if place.is_kept() {
             written.push(place.path.display().to_string());
         }
+        let begun = Instant::now();
         let from = place.path.display().to_string();
         for (verb, target) in [("falsecolor", &self.described.falsecolor), ("convert", &self.described.picture)] {
             let Some(target) = target else { continue };
@@ -178,13 +214,18 @@ impl<'a> Job<'a> {
             progress.suspend(|| image::run(words.command, if self.talk.verbose { self.talk } else { quiet }))?;
             written.push(to);
         }
+        self.writing.set(self.writing.get() + begun.elapsed());
         Ok(())
     }
 
     fn write(&self, place: &Path, source: &mut dyn Source) -> Result<(), Failure> {
+        let begun = Instant::now();
         let mut whole = Whole::open(place, self.inputs)?;
-        exr::write(whole.file(), source, exr::Depth::Float)
+        let mut timed = Timed { source, reading: Duration::ZERO };
+        exr::write(whole.file(), &mut timed, exr::Depth::Float)
             .map_err(|e| Failure::Message(format!("{}: {e}", place.display())))?;
-        whole.finish()
+        whole.finish()?;
+        self.writing.set(self.writing.get() + begun.elapsed().saturating_sub(timed.reading));
+        Ok(())
     }
 }

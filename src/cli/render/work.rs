@@ -1,8 +1,9 @@
 //! One render: the scene built, its meters and pictures sampled, its results told.
 
+use std::cell::Cell;
 use std::io::Write;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 use serde_json::{Value, json};
@@ -26,7 +27,7 @@ use crate::render::radiosity::Summary;
 use crate::render::reading::{self, Reading};
 use crate::render::spool::{Header, Share, Task};
 use crate::report::envelope::{Envelope, Input};
-use crate::report::render as report;
+use crate::report::render::{self as report, Seconds};
 use crate::report::render_audit;
 
 /// Rounds in which meters without a target are sampled: so often the bar moves.
@@ -62,6 +63,10 @@ pub(super) struct Work {
     /// The first meter of each instrument, and the end.
     pub(super) first: Vec<usize>,
     begun: Instant,
+    /// What reading the scene took.
+    reading: Duration,
+    /// What writing pictures takes so far.
+    pub(super) writing: Cell<Duration>,
 }
 
 /// How it is to be rendered.
@@ -125,7 +130,22 @@ impl Work {
         first.push(meters.len());
         let (path, settings) = (path.to_owned(), overrides.settings.text.clone());
         let denoise = overrides.denoise;
-        Ok(Self { path, built, description, inputs, settings, denoise, read, fingerprint, meters, first, begun })
+        let (reading, writing) = (begun.elapsed(), Cell::default());
+        Ok(Self {
+            path,
+            built,
+            description,
+            inputs,
+            settings,
+            denoise,
+            read,
+            fingerprint,
+            meters,
+            first,
+            begun,
+            reading,
+            writing,
+        })
     }
 
     /// The header of the state of a share.
@@ -285,12 +305,13 @@ impl Work {
         talk: Talk,
         packets: u64,
     ) -> Result<(), Failure> {
+        let rendered = self.begun.elapsed();
         let audit = self.audit(packets);
+        let audits = self.begun.elapsed() - rendered;
         let mut findings = self.findings(&done.readings, Some(&audit), talk);
         Notes::new(&[], talk).print(&done.findings);
         findings.extend_from_slice(&done.findings);
-        let seconds = self.begun.elapsed().as_secs_f64();
-        let mut result = report::result(&self.built, &done.readings, &done.written, seconds);
+        let mut result = report::result(&self.built, &done.readings, &done.written, &self.seconds(audits));
         result["energy"] = render_audit::energy(&self.built, &audit);
         result["bias"] = render_audit::bias(&self.built, &audit);
         let mut text = report::text(&self.built, &done.readings);
@@ -303,6 +324,16 @@ impl Work {
         self.print(command, (result, text), as_json, output, findings)?;
         let reached = done.readings.iter().all(|r| r.target.is_none_or(|t| t.1));
         if reached { Ok(()) } else { Err(Failure::No) }
+    }
+
+    /// What the parts of the work took.
+    fn seconds(&self, audits: Duration) -> Seconds {
+        let total = self.begun.elapsed();
+        let (scene, writing) = (self.reading, self.writing.get());
+        let rendering = total.saturating_sub(scene + writing + audits);
+        let [total, scene, rendering, writing, audits] =
+            [total, scene, rendering, writing, audits].map(|part| part.as_secs_f64());
+        Seconds { total, scene, rendering, writing, audits }
     }
 
     /// Writes a result as JSON or as text.
