@@ -28,7 +28,7 @@ use super::{Estimate, Figure, Measure, Sweep, Trial};
 use crate::image::error::Error as ImageError;
 use crate::image::source::{Region, Source};
 use crate::math::student::{tolerance_95, two_sided_95};
-use crate::render::build::{Built, Files, Kind, build};
+use crate::render::build::{Built, Files, Kind, Meshes, Origin};
 use crate::render::denoise::DARK;
 use crate::render::description::{Description, Error, Model, Render, Solver};
 use crate::render::film::Film;
@@ -52,9 +52,9 @@ struct Choice {
 }
 
 impl Choice {
-    fn new(text: &str, description: &Description, files: &dyn Files, render: Render) -> Result<Self, Error> {
+    fn new(origin: Origin<'_>, description: &Description, render: Render) -> Result<Self, Error> {
         let description = Description { render: render.clone(), ..description.clone() };
-        Ok(Self { built: build(text, &description, files)?, render })
+        Ok(Self { built: origin.build(&description)?, render })
     }
 
     /// The luminances of the picture of a camera, by its number among the instruments, row by row, cd/m².
@@ -156,7 +156,8 @@ pub fn sweep(
     if own.samples < LEAST {
         return Err(RenderError::FewSamples(own.samples));
     }
-    let make = |render: Render| Choice::new(text, description, files, render);
+    let meshes = Meshes::default();
+    let make = |render: Render| Choice::new(Origin::new(text, files, &meshes), description, render);
     let samples = MORE * own.samples;
     let best = make(Render { model: Model::Full, samples, ..own.clone() })?;
     let seeds = [1, 2].map(|n| own.seed.wrapping_sub(SEEDS * n));

@@ -26,7 +26,7 @@ use super::timing::{WARM_UPS, interleaved};
 use super::{Estimate, Figure, Measure, Sweep, Trial};
 use crate::math::student::{tolerance_95, two_sided_95};
 use crate::render::bands::RANGE_NM;
-use crate::render::build::{Built, Files, Kind, build};
+use crate::render::build::{Built, Files, Kind, Meshes, Origin};
 use crate::render::description::{Carried, Description, Error, Model, Render, Solver};
 use crate::render::estimate::REPLICATES;
 use crate::render::measure::{Board, Meter, Settings};
@@ -89,10 +89,10 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    pub(super) fn new(text: &str, description: &Description, files: &dyn Files, render: Render) -> Result<Self, Error> {
+    pub(super) fn new(origin: Origin<'_>, description: &Description, render: Render) -> Result<Self, Error> {
         let mut description = description.clone();
         description.render = render.clone();
-        let built = build(text, &description, files)?;
+        let built = origin.build(&description)?;
         let (mut meters, mut read) = (Vec::new(), Vec::new());
         for (n, instrument) in built.instruments.iter().enumerate() {
             let own: &[Meter] = match &instrument.kind {
@@ -166,7 +166,8 @@ pub fn sweep(
     mut progress: impl FnMut(usize, usize),
 ) -> Result<RenderSweep, RenderError> {
     let own = Render { solver: Solver::Path, max_edges: None, ..description.render.clone() };
-    let make = |render: Render| Choice::new(text, description, files, render);
+    let meshes = Meshes::default();
+    let make = |render: Render| Choice::new(Origin::new(text, files, &meshes), description, render);
     let samples = MORE * own.meter_samples;
     let best = make(Render { model: Model::Full, meter_samples: samples, ..own.clone() })?;
     if best.is_blind() {

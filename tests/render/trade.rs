@@ -1,13 +1,20 @@
 //! What a trade of a scene promises: error curves with the slope of theory, and recommendations that hold with other seeds.
 
+use std::cell::Cell;
+
+use glam::DVec3;
 use photopic::image::description::Meaning;
 use photopic::image::format::exr;
 use photopic::image::source::{Region, Source};
-use photopic::render::build::{Built, Kind, NoFiles, build};
+use photopic::luminaire::Luminaire;
+use photopic::render::build::{Built, Files, Kind, Meshes, NoFiles, Origin, PictureFile, build};
 use photopic::render::description::Description;
 use photopic::render::estimate::REPLICATES;
+use photopic::render::format::Object;
 use photopic::render::measure::{Board, Settings};
+use photopic::render::mesh::MeshData;
 use photopic::render::spool::Share;
+use photopic::spectrum::Spectrum;
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -289,4 +296,42 @@ fn the_wavelengths_that_a_scene_requires_are_confirmed_by_rendering_both_ways() 
             assert!(off < 1.2 * error + 4.5 * noise, "{rung}: {off} ± {noise}, {error}");
         }
     }
+}
+
+/// Counts how often a mesh is read: a triangle and a sliver.
+struct Counted(Cell<usize>);
+
+impl Files for Counted {
+    fn spectrum(&self, file: &str) -> Result<Spectrum, String> {
+        NoFiles.spectrum(file)
+    }
+
+    fn luminaire(&self, file: &str) -> Result<Luminaire, String> {
+        NoFiles.luminaire(file)
+    }
+
+    fn meshes(&self, _: &str) -> Result<Vec<Object>, String> {
+        self.0.set(self.0.get() + 1);
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, 2.0 * DVec3::X];
+        let mesh = MeshData { positions, triangles: vec![[0, 1, 2], [0, 1, 3]], ..MeshData::default() };
+        Ok(vec![Object { mesh, ..Object::default() }])
+    }
+
+    fn picture(&self, file: &str) -> Result<PictureFile, String> {
+        NoFiles.picture(file)
+    }
+}
+
+/// Scenes of one text read a mesh once for all choices of settings, and each tells what the mesh lost.
+#[test]
+fn scenes_of_one_text_share_their_meshes() {
+    let text = "[[shape]]\nmesh = { file = \"a.ply\" }\n[[sensor]]\nname = \"s\"\nilluminance = { at = [0, 0, 1] }\n";
+    let (files, meshes) = (Counted(Cell::new(0)), Meshes::default());
+    let mut description = Description::parse(text).expect("a scene");
+    for step in [None, Some(10.0)] {
+        description.render.wavelength_step_nm = step;
+        let built = Origin::new(text, &files, &meshes).build(&description).expect("sound");
+        assert_eq!(built.incomplete.iter().map(|i| (i.triangles, i.of, i.first)).collect::<Vec<_>>(), [(1, 2, 2)]);
+    }
+    assert_eq!(files.0.get(), 1);
 }

@@ -37,6 +37,7 @@ use crate::spectrum::Spectrum;
 pub use analysis::Analysis;
 pub use instrument::{Instrument, Kind, Quantities};
 pub use picture::PictureFile;
+pub use surface::Meshes;
 
 /// Where a scene's files come from; names are as the scene gives them.
 pub trait Files {
@@ -150,7 +151,7 @@ struct Builder<'a> {
     text: &'a str,
     description: &'a Description,
     files: &'a dyn Files,
-    meshes: RefCell<surface::Meshes>,
+    meshes: &'a Meshes,
     /// By file, and whether as light.
     pictures: RefCell<HashMap<(String, bool), Rc<picture::Channels>>>,
 }
@@ -161,12 +162,41 @@ impl Builder<'_> {
     }
 }
 
+/// The text of a scene and its files. Scenes that are built from it one after the other share the meshes that were read.
+#[derive(Clone, Copy)]
+pub struct Origin<'a> {
+    text: &'a str,
+    files: &'a dyn Files,
+    meshes: &'a Meshes,
+}
+
+impl<'a> Origin<'a> {
+    /// A text and its files; `meshes` keeps those that are read, and is of no other files.
+    #[must_use]
+    pub fn new(text: &'a str, files: &'a dyn Files, meshes: &'a Meshes) -> Self {
+        Self { text, files, meshes }
+    }
+
+    /// Builds a scene from what was read from the text.
+    ///
+    /// # Errors
+    /// The first mistake, with its place in the text.
+    pub fn build(self, description: &Description) -> Result<Built, Error> {
+        let Self { text, files, meshes } = self;
+        built(&Builder { text, description, files, meshes, pictures: RefCell::default() })
+    }
+}
+
 /// Builds a scene from its text and what was read from it.
 ///
 /// # Errors
 /// The first mistake, with its place in the text.
 pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result<Built, Error> {
-    let builder = Builder { text, description, files, meshes: RefCell::default(), pictures: RefCell::default() };
+    Origin::new(text, files, &Meshes::default()).build(description)
+}
+
+fn built(builder: &Builder<'_>) -> Result<Built, Error> {
+    let (text, description) = (builder.text, builder.description);
     builder.check_names()?;
     let colours = colour::Colours::new(&builder)?;
     let (bands, wavelength_error) = builder.bands(&colours)?;
@@ -227,7 +257,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
     let endless = builder.endless(&scene, &surfaces, &instruments, &limits)?;
     let material_names = materials.into_iter().map(|(name, _)| name).chain(["no material".to_owned()]).collect();
     let single_scattering = builder.single_scattering(scene.bands(), &quantities)?;
-    let incomplete = builder.meshes.into_inner().incomplete;
+    let incomplete = builder.meshes.incomplete();
     let denoises = render.denoises().map_err(|reason| {
         let place = render.denoise.as_ref().map_or(0..0, toml::Spanned::span);
         Error::at(text, &place, reason.to_owned())
@@ -263,7 +293,8 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
 /// # Errors
 /// The first mistake in the scene's spectra, with its place in the text.
 pub fn error_in_rgb(text: &str, description: &Description, files: &dyn Files) -> Result<Option<f64>, Error> {
-    let builder = Builder { text, description, files, meshes: RefCell::default(), pictures: RefCell::default() };
+    let meshes = &Meshes::default();
+    let builder = Builder { text, description, files, meshes, pictures: RefCell::default() };
     Ok(colour::Colours::new(&builder)?.error_in_rgb())
 }
 

@@ -1,5 +1,6 @@
 //! Shapes and what they emit.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -36,13 +37,20 @@ use crate::render::shape::triangle::Triangle;
 /// The surfaces of a shape, or why there are none.
 type Faces = Result<Vec<Arc<dyn Shape>>, ShapeError>;
 
-/// Files of meshes that were read.
+/// Files of meshes that were read, and their trees.
 #[derive(Debug, Default)]
-pub(super) struct Meshes {
+pub struct Meshes {
     /// By name, and whether without normals.
-    known: HashMap<(String, bool), Vec<Arc<Mesh>>>,
+    known: RefCell<HashMap<(String, bool), Vec<Arc<Mesh>>>>,
     /// Those that lost triangles.
-    pub(super) incomplete: Vec<Incomplete>,
+    incomplete: RefCell<Vec<Incomplete>>,
+}
+
+impl Meshes {
+    /// Those that lost triangles.
+    pub(super) fn incomplete(&self) -> Vec<Incomplete> {
+        self.incomplete.borrow().clone()
+    }
 }
 
 /// The name of a shape in reports.
@@ -175,7 +183,7 @@ impl Builder<'_> {
     /// The meshes of a file with their trees; a file is read once, however many shapes name it.
     fn searched(&self, m: &DescribedMesh, at: &Range<usize>) -> Result<Vec<Arc<Mesh>>, Error> {
         let key = (m.file.clone(), m.flat);
-        if let Some(known) = self.meshes.borrow().known.get(&key) {
+        if let Some(known) = self.meshes.known.borrow().get(&key) {
             return Ok(known.clone());
         }
         let (mut meshes, mut incomplete) = (Vec::new(), Vec::new());
@@ -193,12 +201,12 @@ impl Builder<'_> {
             }
             meshes.push(Arc::new(mesh));
         }
-        let mut all = self.meshes.borrow_mut();
+        let mut known = self.meshes.known.borrow_mut();
         // Flat or not, the file's triangles are the same.
-        if !all.known.contains_key(&(m.file.clone(), !m.flat)) {
-            all.incomplete.append(&mut incomplete);
+        if !known.contains_key(&(m.file.clone(), !m.flat)) {
+            self.meshes.incomplete.borrow_mut().append(&mut incomplete);
         }
-        all.known.insert(key, meshes.clone());
+        known.insert(key, meshes.clone());
         Ok(meshes)
     }
 

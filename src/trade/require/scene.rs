@@ -6,7 +6,7 @@
 
 use super::{Requirement, Rung};
 use crate::math::student::two_sided_95;
-use crate::render::build::{Files, build, error_in_rgb};
+use crate::render::build::{Files, Meshes, Origin, error_in_rgb};
 use crate::render::description::{Description, Model, Render, Solver};
 use crate::trade::render::{Choice, RenderError};
 
@@ -36,7 +36,9 @@ pub fn scene(
         meter_samples: description.render.meter_samples.min(SAMPLES),
         ..description.render.clone()
     };
-    let with = |render: Render| Choice::new(text, description, files, render);
+    let meshes = Meshes::default();
+    let origin = Origin::new(text, files, &meshes);
+    let with = |render: Render| Choice::new(origin, description, render);
     let reference = with(own.clone())?;
     if reference.is_blind() {
         return Err(RenderError::NoMeter);
@@ -50,7 +52,7 @@ pub fn scene(
         for wavelength_tolerance in TOLERANCES {
             let mut description = description.clone();
             description.render = Render { wavelength_tolerance, ..own.clone() };
-            let built = build(text, &description, files)?;
+            let built = origin.build(&description)?;
             let model = format!("{} wavelengths", built.scene.bands().len());
             if rungs.last().is_none_or(|r| r.model != model) {
                 rungs.push(Rung { model, error: built.wavelength_error });
