@@ -44,6 +44,11 @@ fn a_lamp_is_read_with_its_colour() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = scene(&folder, LAMP);
     let out = json(photopic().arg("render").arg(&path).args(["--json", "--meter-samples", "64"]));
+    let result = &out["results"][0];
+    let seconds = |value: &Value| value.as_f64().expect("seconds");
+    let parts = ["scene", "rendering", "writing", "audits"].map(|part| seconds(&result["seconds_of"][part]));
+    assert!(parts.iter().all(|part| *part >= 0.0) && parts[2] == 0.0, "{parts:?}");
+    assert!((parts.iter().sum::<f64>() - seconds(&result["seconds"])).abs() < 1e-6, "{parts:?}");
     let sensor = &out["results"][0]["sensors"][0];
     assert_eq!((sensor["name"].as_str(), sensor["unit"].as_str()), (Some("below"), Some("lx")));
     let value = sensor["value"].as_f64().expect("a number");

@@ -183,3 +183,45 @@ fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
     }
     solution
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+
+    /// Against the equation that defines it, (M + λ diag(0, M₁₁, …)) s = e₀, of features in different units, one of which does not vary; the plain mean where
+    /// there is nothing else to tell, and nothing without neighbours.
+    #[test]
+    fn what_is_solved_is_the_solution() {
+        let (mut fits, mut stream) = (Fits::default(), Stream::new(12, 1));
+        let mut uniform = || stream.uniforms::<1>()[0] as f32;
+        for _ in 0..40 {
+            let mut weights: Tile = std::array::from_fn(|_| uniform());
+            (weights[0], weights[63]) = (0.0, 0.0);
+            let differences = std::array::from_fn(|feature| {
+                let unit = if feature == 3 { 0.0 } else { 10_f32.powi(2 * (feature as i32) - 6) };
+                std::array::from_fn(|i| if i == 1 { 0.0 } else { unit * (uniform() - 0.4) })
+            });
+            fits.add(&weights, &differences);
+        }
+        fits.solve();
+        for i in 0..TILE {
+            let m = |j: usize, k: usize| f64::from(fits.sums[index(j.max(k), j.min(k))][i]);
+            let s: [f64; UNKNOWNS] = std::array::from_fn(|k| f64::from(fits.solutions[k][i]));
+            if m(0, 0) == 0.0 {
+                assert_eq!(s, [0.0; UNKNOWNS]);
+                continue;
+            }
+            for j in 0..UNKNOWNS {
+                let terms = (0..UNKNOWNS).map(|k| m(j, k) * (if j == k && j > 0 { 1.0 + RIDGE } else { 1.0 }) * s[k]);
+                let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
+                // Solutions are kept in single precision: each term to half a unit in the last place.
+                let expected = if j == 0 { 1.0 } else { 0.0 };
+                assert!((sum - expected).abs() <= 0.5 * f64::from(f32::EPSILON) * size, "{i} {j}: {sum}");
+            }
+            if i == 1 {
+                assert_eq!(s[1..], [0.0; FEATURES]);
+            }
+        }
+    }
+}
