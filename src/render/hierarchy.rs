@@ -2,7 +2,7 @@
 //!
 //! The crate `obvhs` sorts the boxes into a binary hierarchy (PLOC with reinsertion); its nodes are then drawn together until each has up
 //! to eight children, the largest first. Boxes are kept as steps of a 254th of their node, rounded outwards, so that a node is two cache
-//! lines: rays without order spend their time waiting for nodes.
+//! lines: rays without order spend their time waiting for nodes. Searches are compiled for the instruction set at hand (`eight`).
 //!
 //! References: D. Meister & J. Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction*, TVCG 24(3)
 //! (2018); H. Ylitie, T. Karras, S. Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs*, HPG 2017; I. Wald, C. Benthin, S. Boulos, *Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs*,
@@ -19,7 +19,10 @@ use obvhs::ploc::PlocBuilder;
 use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
 use smallvec::SmallVec;
-use wide::{CmpLe, f32x8, i32x8, u8x16, u16x8};
+
+mod eight;
+
+use eight::{Eight, Search};
 
 /// Boxes in a leaf at most.
 const LEAF: usize = 3;
@@ -47,7 +50,7 @@ struct Node {
     /// What the boxes' planes are counted in, from the origin.
     step: [f32; 3],
     /// For x, y and z: the least of each box, then the greatest of each.
-    planes: [u8x16; 3],
+    planes: [[u8; 16]; 3],
     children: [u32; 8],
     /// A bit for each box that is there.
     there: u32,
@@ -107,9 +110,37 @@ impl Hierarchy {
 
     /// Calls `test` with the places of boxes that the line may meet before `limit`, roughly from near to far; `test` returns a nearer
     /// limit where it found something.
-    pub(super) fn closest(&self, line: Line, mut limit: f32, mut test: impl FnMut(usize) -> Option<f32>) {
+    pub(super) fn closest(&self, line: Line, limit: f32, test: impl FnMut(usize) -> Option<f32>) {
+        eight::dispatch(Closest { hierarchy: self, line, limit, test });
+    }
+
+    /// Whether `test` is true for any of the boxes that the line may meet before `limit`.
+    pub(super) fn any(&self, line: Line, limit: f32, test: impl FnMut(usize) -> bool) -> bool {
+        eight::dispatch(Any { hierarchy: self, line, limit, test })
+    }
+
+    /// Bytes that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+    }
+}
+
+/// A search for the nearest box.
+struct Closest<'a, T> {
+    hierarchy: &'a Hierarchy,
+    line: Line,
+    limit: f32,
+    test: T,
+}
+
+impl<T: FnMut(usize) -> Option<f32>> Search for Closest<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self, eight: impl Eight) {
+        let Self { hierarchy, line, mut limit, mut test } = self;
         let mut open: SmallVec<[(u32, f32); OPEN]> = SmallVec::new();
-        if !self.nodes.is_empty() {
+        if !hierarchy.nodes.is_empty() {
             open.push((0, 0.0));
         }
         while let Some((mut child, near)) = open.pop() {
@@ -125,8 +156,8 @@ impl Hierarchy {
                     }
                     break;
                 }
-                let node = &self.nodes[child as usize];
-                let (near, mut hits) = node.cross(&line, limit);
+                let node = &hierarchy.nodes[child as usize];
+                let (near, mut hits) = eight.cross(node, &line, limit);
                 if hits == 0 {
                     break;
                 }
@@ -137,7 +168,6 @@ impl Hierarchy {
                     continue;
                 }
                 // Several: the nearest is next, the others wait in the order of their distances.
-                let near = near.to_array();
                 let mut first = (child, near[slot & 7]);
                 let bottom = open.len();
                 while hits != 0 {
@@ -158,11 +188,24 @@ impl Hierarchy {
             }
         }
     }
+}
 
-    /// Whether `test` is true for any of the boxes that the line may meet before `limit`.
-    pub(super) fn any(&self, line: Line, limit: f32, mut test: impl FnMut(usize) -> bool) -> bool {
+/// A search for any box.
+struct Any<'a, T> {
+    hierarchy: &'a Hierarchy,
+    line: Line,
+    limit: f32,
+    test: T,
+}
+
+impl<T: FnMut(usize) -> bool> Search for Any<'_, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self, eight: impl Eight) -> bool {
+        let Self { hierarchy, line, limit, mut test } = self;
         let mut open: SmallVec<[u32; OPEN]> = SmallVec::new();
-        if !self.nodes.is_empty() {
+        if !hierarchy.nodes.is_empty() {
             open.push(0);
         }
         while let Some(child) = open.pop() {
@@ -172,19 +215,14 @@ impl Hierarchy {
                 }
                 continue;
             }
-            let node = &self.nodes[child as usize];
-            let (_, mut hits) = node.cross(&line, limit);
+            let node = &hierarchy.nodes[child as usize];
+            let (_, mut hits) = eight.cross(node, &line, limit);
             while hits != 0 {
                 open.push(node.children[hits.trailing_zeros() as usize & 7]);
                 hits &= hits - 1;
             }
         }
         false
-    }
-
-    /// Bytes that it takes.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice())
     }
 }
 
@@ -195,7 +233,7 @@ fn leaf(child: u32) -> Range<usize> {
 }
 
 impl Node {
-    const EMPTY: Self = Self { origin: [0.0; 3], step: [0.0; 3], planes: [u8x16::ZERO; 3], children: [0; 8], there: 0 };
+    const EMPTY: Self = Self { origin: [0.0; 3], step: [0.0; 3], planes: [[0; 16]; 3], children: [0; 8], there: 0 };
 
     /// The node of a binary node, with the boxes of some of its descendants and nothing in them.
     fn around(binary: &Bvh2, of: usize, children: &[Descendant]) -> Self {
@@ -212,30 +250,11 @@ impl Node {
                 let [min, max] = bounds(child.node).map(|corner| (corner[axis] - origin[axis]) / step);
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast that saturates")]
                 let (min, max) = (min.floor() as u8, max.ceil() as u8);
-                node.planes[axis].as_array_mut()[slot] = min;
-                node.planes[axis].as_array_mut()[slot + 8] = max;
+                node.planes[axis][slot] = min;
+                node.planes[axis][slot + 8] = max;
             }
         }
         node
-    }
-
-    /// Where the line enters each box, and a bit for each box that it meets at a parameter in [0, `limit`].
-    #[inline]
-    fn cross(&self, line: &Line, limit: f32) -> (f32x8, u32) {
-        let slab = |axis: usize| {
-            let scale = f32x8::splat(self.step[axis] * line.inverse[axis]);
-            let shift = f32x8::splat((self.origin[axis] - line.origin[axis]) * line.inverse[axis]);
-            let at = |steps: u16x8| f32x8::from_i32x8(i32x8::from_u16x8(steps)) * scale + shift;
-            let planes = self.planes[axis];
-            let (least, greatest) = (at(u16x8::from_u8x16_low(planes)), at(u16x8::from_u8x16_high(planes)));
-            (least.fast_min(greatest), least.fast_max(greatest))
-        };
-        let ((x, x_end), (y, y_end), (z, z_end)) = (slab(0), slab(1), slab(2));
-        let near = x.fast_max(y).fast_max(z.fast_max(f32x8::ZERO));
-        let far = x_end.fast_min(y_end).fast_min(z_end.fast_min(f32x8::splat(limit)));
-        #[expect(clippy::cast_sign_loss, reason = "eight bits")]
-        let hits = near.cmp_le(far).move_mask() as u32;
-        (near, hits & self.there)
     }
 }
 

@@ -9,6 +9,9 @@ use super::tile::{NEIGHBOURS, TILE, Tile, Window, neighbour};
 use super::weights::{Guide, overlap, scratch};
 use crate::render::lanes::multiply;
 
+/// Bands that are added up together.
+const TOGETHER: usize = 4;
+
 /// What filtering needs.
 pub(super) struct Filter {
     /// Of each neighbour, for all pixels of a row and on to the end of its last tile; 0 where there is none.
@@ -21,7 +24,7 @@ pub(super) struct Filter {
     fits: Fits,
     /// What each neighbour counts.
     kernels: Vec<Tile>,
-    samples: Window,
+    samples: [Window; TOGETHER],
 }
 
 impl Filter {
@@ -33,7 +36,7 @@ impl Filter {
             features: std::array::from_fn(|_| Window::default()),
             fits: Fits::default(),
             kernels: vec![[0.0; TILE]; NEIGHBOURS],
-            samples: Window::default(),
+            samples: std::array::from_fn(|_| Window::default()),
         }
     }
 
@@ -131,21 +134,29 @@ impl Filtering<'_> {
         }
     }
 
-    /// Adds up the bands of the tile that begins at column `first`.
+    /// Adds up the bands of the tile that begins at column `first`, some at a time: what each neighbour counts is read once for them.
     #[inline(always)]
     fn apply(&mut self, first: usize) {
         let (filter, records) = (&mut *self.filter, self.records);
         let own = (records.width - first).min(TILE);
-        for (band, out) in self.bands.chunks_exact_mut(records.width).enumerate() {
-            filter.samples.load(records, records.layout.band(self.half) + band, first, self.y);
-            let mut sums = [0.0; TILE];
+        let channel = records.layout.band(self.half);
+        for (number, bands) in self.bands.chunks_mut(TOGETHER * records.width).enumerate() {
+            let count = bands.len() / records.width;
+            for (band, samples) in filter.samples[..count].iter_mut().enumerate() {
+                samples.load(records, channel + number * TOGETHER + band, first, self.y);
+            }
+            let mut sums = [[0.0; TILE]; TOGETHER];
             for (number, kernel) in filter.kernels.iter().enumerate() {
-                let samples = filter.samples.of(number);
+                let samples = filter.samples.each_ref().map(|samples| samples.of(number));
                 for i in 0..TILE {
-                    sums[i] += kernel[i] * samples[i];
+                    for band in 0..TOGETHER {
+                        sums[band][i] += kernel[i] * samples[band][i];
+                    }
                 }
             }
-            out[first..][..own].copy_from_slice(&sums[..own]);
+            for (out, sums) in bands.chunks_exact_mut(records.width).zip(&sums) {
+                out[first..][..own].copy_from_slice(&sums[..own]);
+            }
         }
     }
 }
