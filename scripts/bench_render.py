@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--whole] [--bands] [--denoise] [--denominators N]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--whole] [--bands] [--denoise] [--denominators N] [--turns N]
 
 The neutral JSON scenes are written as TOML for photopic, without polarisation, which neither the references nor Mitsuba's renders of them know (with it
 light in the prism differs from theirs by a relMSE of 0.013); the picture's tristimulus values are compared with the two high-sample references
@@ -18,6 +18,7 @@ With --denominators N errors are relative to a picture of N samples a pixel by p
 With --denoise photopic's pictures are also filtered (`--denoise`), at 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
 better as 1/N, so the seconds are those between the last two, along a straight line of logarithms. With --bands as well it is the median error of the
 bands, by the product of the differences from two renders of eight times the samples.
+With --turns N every render is repeated N times and the median of its times counts.
 Exit status 2 where the scenes are not there.
 """
 
@@ -41,6 +42,8 @@ SHARED = ROOT.parent / "shared" / "render"
 CANDELA = 106.75026 * 683.002
 # The name of photopic's seconds without reading, writing and audits.
 ALONE = "rendering"
+# Times that each render is repeated.
+TURNS = 1
 # Middles of bands of 10 nm.
 BANDS_NM = np.arange(405, 696, 10)
 SELLMEIER = "dielectric = {{ sellmeier = {{ b = {b}, c_um2 = {c} }} }}"
@@ -122,14 +125,18 @@ def ours(binary, name, samples, step_nm, adaptive, solver, channels=("X", "Y", "
         path = Path(folder)
         (path / "scene.toml").write_text(scene(name, step_nm, adaptive, solver))
         command = [binary, "-q", "render", "scene.toml", "--samples", str(samples), "--seed", str(seed), "--json", "-o", "out.json", *options]
-        start = time.perf_counter()
-        subprocess.run(command, cwd=folder, check=True)
-        seconds = time.perf_counter() - start
-        rendering = json.loads((path / "out.json").read_text())["results"][0]["seconds_of"]["rendering"]
+
+        def turn():
+            start = time.perf_counter()
+            subprocess.run(command, cwd=folder, check=True)
+            seconds = time.perf_counter() - start
+            return seconds, json.loads((path / "out.json").read_text())["results"][0]["seconds_of"]["rendering"]
+
+        seconds = np.median([turn() for _ in range(TURNS)], axis=0)
         with OpenEXR.File(str(path / "view.exr"), separate_channels=True) as file:
             stored = file.channels()
             pixels = np.stack([stored[c].pixels for c in channels], axis=-1).astype(float)
-    return np.array([seconds, rendering]), pixels
+    return seconds, pixels
 
 
 def mitsuba_scene(name, samples):
@@ -164,9 +171,12 @@ def mitsuba(name, samples, bands=False, seed=2):
             description["sensor"]["film"][f"band_{nm}"] = box
     loaded = mi.load_dict(description)
     np.array(mi.render(loaded, spp=samples, seed=1))
-    start = time.perf_counter()
-    pixels = np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
-    return np.array([time.perf_counter() - start]), pixels
+    seconds = []
+    for _ in range(TURNS):
+        start = time.perf_counter()
+        pixels = np.array(mi.render(loaded, spp=samples, seed=seed)).astype(float)
+        seconds.append(time.perf_counter() - start)
+    return np.array([np.median(seconds)]), pixels
 
 
 def band_errors(render, reference):
@@ -207,9 +217,12 @@ def compare_bands(binary, name, arguments):
 
 def whole(name, samples, call, error):
     """Prints what a user of Mitsuba waits for, whose render call takes so long and has such an error."""
-    start = time.perf_counter()
-    subprocess.run([sys.executable, __file__, "--once", "--scenes", name, "--samples", str(samples)], check=True)
-    seconds = time.perf_counter() - start
+    seconds = []
+    for _ in range(TURNS):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, __file__, "--once", "--scenes", name, "--samples", str(samples)], check=True)
+        seconds.append(time.perf_counter() - start)
+    seconds = np.median(seconds)
     print(f"{name:12} {'whole':13} {seconds:8.2f} {error:10.5f} {seconds - call + call * error / 1e-3:10.2f}", flush=True)
 
 
@@ -260,8 +273,11 @@ def main():
     parser.add_argument("--once", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--denominators", type=int, default=0, help="errors relative to a picture of so many samples by photopic")
     parser.add_argument("--denoise", action="store_true", help="photopic's filtered pictures as well, of as many samples as they need")
+    parser.add_argument("--turns", type=int, default=1, help="times that each render is repeated; the median of its times counts")
     parser.add_argument("--bands", action="store_true", help="the error of bands of 10 nm in place of luminance")
     arguments = parser.parse_args()
+    global TURNS
+    TURNS = arguments.turns
     if not SHARED.is_dir():
         print("skipped: ../shared/render is not here")
         return 2

@@ -198,7 +198,7 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
 fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let (text, description) = (builder.text, builder.description);
     builder.check_names()?;
-    let colours = colour::Colours::new(&builder)?;
+    let colours = colour::Colours::new(builder)?;
     let (bands, wavelength_error) = builder.bands(&colours)?;
     let quantities = Quantities::new(&bands);
     let materials = builder.materials(&bands)?;

@@ -37,11 +37,13 @@ use crate::render::shape::triangle::Triangle;
 /// The surfaces of a shape, or why there are none.
 type Faces = Result<Vec<Arc<dyn Shape>>, ShapeError>;
 
+/// Meshes by the name of their file, and whether without normals.
+type Known = HashMap<(String, bool), Vec<Arc<Mesh>>>;
+
 /// Files of meshes that were read, and their trees.
 #[derive(Debug, Default)]
 pub struct Meshes {
-    /// By name, and whether without normals.
-    known: RefCell<HashMap<(String, bool), Vec<Arc<Mesh>>>>,
+    known: RefCell<Known>,
     /// Those that lost triangles.
     incomplete: RefCell<Vec<Incomplete>>,
 }

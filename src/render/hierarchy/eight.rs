@@ -114,7 +114,7 @@ mod tests {
         let mut uniform = || stream.uniforms::<1>()[0] as f32;
         let mut met = 0;
         for n in 0..2000 {
-            let [origin, from, direction] = [0; 3].map(|_| [0; 3].map(|_| 2.0 * uniform() - 1.0));
+            let [origin, from] = [0; 2].map(|_| [0; 3].map(|_| 2.0 * uniform() - 1.0));
             let mut node = Node { origin, step: [0; 3].map(|_| uniform() / 254.0), ..Node::EMPTY };
             for planes in &mut node.planes {
                 for i in 0..8 {
@@ -123,7 +123,12 @@ mod tests {
                 }
             }
             node.there = 0x7f;
-            let line = Line { origin: from, inverse: direction.map(|d| if n % 7 == 0 { 1e30 } else { 1.0 / d }) };
+            // Towards the node; some along an axis.
+            let inverse = std::array::from_fn(|axis| {
+                let along = origin[axis] + uniform() - from[axis];
+                if n % 7 == 0 && axis != n % 3 { 1e30 } else { 1.0 / along }
+            });
+            let line = Line { origin: from, inverse };
             let limit = if n % 3 == 0 { f32::INFINITY } else { 1.0 };
             let (portable, own) = (Portable.cross(&node, &line, limit), simd.cross(&node, &line, limit));
             assert_eq!((portable.0.map(f32::to_bits), portable.1), (own.0.map(f32::to_bits), own.1));

@@ -155,9 +155,23 @@ impl Guide {
         let positions = || landings.iter().map(|landing| landing.position);
         let extent = positions().fold(DVec3::NEG_INFINITY, DVec3::max) - positions().fold(DVec3::INFINITY, DVec3::min);
         let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+        if extent[axis] == 0.0 {
+            // All at one place, where so many are enough.
+            self.grow(&mut landings[..LEAF]);
+            return;
+        }
         // Stable, so that the order of equals is that of the packets.
         landings.sort_by(|a, b| a.position[axis].total_cmp(&b.position[axis]));
-        let (below, above) = landings.split_at_mut(landings.len() / 2);
+        // As near to the middle as a place parts them: those of a floor have one height.
+        let middle = landings[landings.len() / 2].position[axis];
+        let ends = [
+            landings.partition_point(|landing| landing.position[axis] < middle),
+            landings.partition_point(|landing| landing.position[axis] <= middle),
+        ];
+        let off = |end: usize| end.abs_diff(landings.len() / 2);
+        let [first, second] = ends;
+        let part = if second == landings.len() || first > 0 && off(first) <= off(second) { first } else { second };
+        let (below, above) = landings.split_at_mut(part);
         let (node, at) = (self.nodes.len(), above[0].position[axis]);
         self.nodes.push(Node::Split { axis, at, above: 0 });
         self.grow(below);
@@ -201,9 +215,13 @@ fn caps(landings: &[Landing]) -> Vec<Caps> {
     for (number, landing) in landings.iter().enumerate() {
         squares.clear();
         squares.extend(landings.iter().map(|other| landing.back.distance_squared(other.back)));
-        // The direction itself is the nearest of all.
-        let (_, nearest, _) = squares.select_nth_unstable_by(NEAREST, f64::total_cmp);
-        let square = (*nearest * WIDER * WIDER).clamp(SQUARES[0], SQUARES[1]);
+        // The direction itself is the nearest of all; a few of a leaf tell nothing of one another.
+        let square = if squares.len() > NEAREST {
+            let (_, nearest, _) = squares.select_nth_unstable_by(NEAREST, f64::total_cmp);
+            (*nearest * WIDER * WIDER).clamp(SQUARES[0], SQUARES[1])
+        } else {
+            SQUARES[1]
+        };
         let w = count(landing);
         sum += w;
         let (caps, lane) = (&mut caps[number / LANES], number % LANES);
@@ -334,6 +352,41 @@ mod tests {
         }
         // Where much comes in other ways, the share is less.
         assert!(guide.at(DVec3::new(0.1, 0.1, 0.0)).share < guide.at(DVec3::new(0.9, 0.9, 0.0)).share);
+    }
+
+    /// Where most landings have one height, some one place, and a few are far above: each is among those that its place is asked for, and no leaf is large.
+    #[test]
+    fn landings_are_found_where_they_are() {
+        let mut numbers = Stream::new(8, 9);
+        let polished: Vec<Landing> = (0..20_000)
+            .map(|i| {
+                let [x, y] = [numbers.uniform(), numbers.uniform()].map(|u| if i % 5 == 0 { 0.25 } else { u });
+                let back = cosine_hemisphere([numbers.uniform(), numbers.uniform()]);
+                Landing { position: DVec3::new(x, y, if i % 50 == 1 { 2.5 } else { 0.0 }), back, weight: 1.0 }
+            })
+            .collect();
+        let guide = Guide::new(Landings { polished: polished.clone(), plain: Vec::new() }).expect("a guide");
+        let mut lost = 0;
+        for landing in &polished {
+            let caps = guide.at(landing.position).caps;
+            assert!(caps.len() <= LEAF.div_ceil(LANES));
+            let axes = |caps: &Caps| (0..LANES).any(|lane| DVec3::from(caps.axes.map(|a| a[lane])) == landing.back);
+            lost += usize::from(!caps.iter().any(axes));
+        }
+        // A fifth are at one place, of which one leaf is kept.
+        assert_eq!(lost, polished.len() / 5 - LEAF);
+    }
+
+    /// A lamp's few landings on a shelf above a floor are a leaf of their own.
+    #[test]
+    fn a_few_landings_are_a_leaf() {
+        let mut landings = landings(600);
+        landings.polished.iter_mut().take(3).for_each(|landing| landing.position.z = 7.0);
+        let there = landings.polished[1];
+        let guide = Guide::new(landings).expect("a guide");
+        let guided = guide.at(there.position);
+        assert_eq!(guided.caps.len(), 1);
+        assert!(guided.density(there.back, 0.0) > 0.0);
     }
 
     /// A direction that a third of the packets came from is found by a third of the guided draws, into caps of 0.1 mrad.

@@ -12,10 +12,10 @@
 //! | falloff, power | (1/r₀²)(r₀/r)^n: n = 2 is the square law, n = 0 none | n, r₀ (m) |
 //! | falloff, controlled | (1/r₀²) M exp(s (r/r₀)^β) within r₀, the power law beyond; s = −ln M, β = n/ln M join them smoothly | n, r₀, M > 1 (the most, at the light) |
 //! | beam | cosᵏ of the angle α to the axis; 0 behind | k |
-//! | shape | a soft [`Superellipse`] on the window, or none | |
+//! | shape | a soft [`Superellipse`](super::superellipse::Superellipse) on the window, or none | |
 //! | shear | moves the window: barn doors | (X, Y) |
 //! | cut-on, cut-off | smooth steps in z: from near − edge to near, from far to far + edge | m |
-//! | blockers | cards across the axis (cucoloris): 1 − opacity · coverage where the way to the light crosses them | depth, middle (m), [`Superellipse`] (m), opacity |
+//! | blockers | cards across the axis (cucoloris): 1 − opacity · coverage where the way to the light crosses them | depth, middle (m), [`Superellipse`](super::superellipse::Superellipse) (m), opacity |
 //! | slide | Σ_c k_c(X, Y) S_c,b, bilinear; 0 beyond it | picture, half extents |
 //! | noise | 1 − amplitude (½ + ½ g(f X, f Y)), g gradient noise | f, amplitude, seed |
 //! | shadow | whether anything may stand in its way: the renderer asks [`Light::casts_shadows`] | |
