@@ -85,24 +85,6 @@ fn pictures_are_those_of_the_path_tracer() {
     }
 }
 
-/// Beneath glass and a small lamp a guided picture has less noise, by the scatter over seeds of the four quarters of the picture, all bands: a lamp a hundredth
-/// as large as that of the other tests is found by chance a hundred times more seldom, and by what packets tell as often. (By four sets of 32 seeds 0.35 to
-/// 0.59 of the variance.)
-#[test]
-fn guiding_lessens_noise() {
-    let lamp = "[[shape]]\nmaterial = \"white\"\nemission = { radiance = \"100000 cd/m2\", spectrum = \"D65\" }\nrectangle = { corner = [-0.06, -0.06, 2.5], edges = [[0, 0.12, 0], [0.12, 0, 0]] }\n";
-    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{BALL}{lamp}{VIEW}"));
-    let noise = |guiding, first: u64| -> f64 {
-        let all: Vec<Vec<f64>> = (first..first + 64)
-            .map(|seed| blocks(&picture(&built, &settings(&built, seed, Some(guiding)), 64).0, camera(&built), 2))
-            .collect();
-        let parts = (0..all[0].len()).map(|part| figure(&all.iter().map(|p| p[part]).collect::<Vec<_>>()));
-        parts.filter(|(value, _)| *value > 0.0).map(|(value, error)| (error / value).powi(2)).sum()
-    };
-    let (with, without) = (noise(true, 0), noise(false, 1000));
-    assert!(with < 0.8 * without, "{with} {without}");
-}
-
 /// The mean of the radiance along rays that are drawn in a cone, which go both ways at glass as long as either is above 0.2 %, is what a meter of that
 /// cone reads, whose paths go on one way much sooner: in every band, with polarisation, dispersion, and lamps seen by reflections inside.
 #[test]
