@@ -131,7 +131,6 @@ impl Mesh {
         open.push(0..data.triangles.len());
         while let Some(range) = open.pop() {
             let triangles = &mut data.triangles[range.clone()];
-            let all = |boxes: &[Bounds]| boxes.par_iter().copied().reduce(|| Bounds::EMPTY, Bounds::union);
             if triangles.len() > most {
                 // Halved across its longest side.
                 let bounds = triangles.par_iter().map(of).reduce(|| Bounds::EMPTY, Bounds::union);
@@ -146,7 +145,7 @@ impl Mesh {
                 let renumbered: Vec<_> = tree.renumber().into_par_iter().map(|i| triangles[i as usize]).collect();
                 triangles.copy_from_slice(&renumbered);
                 blocks.push(Block { first: range.start, tree });
-                boxes.push(all(&own));
+                boxes.push(own.into_par_iter().reduce(|| Bounds::EMPTY, Bounds::union));
             }
         }
         let corners = Corners::new(&data.positions, &data.triangles);

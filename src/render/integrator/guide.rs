@@ -164,12 +164,10 @@ impl Guide {
         landings.sort_by(|a, b| a.position[axis].total_cmp(&b.position[axis]));
         // As near to the middle as a place parts them: those of a floor have one height.
         let middle = landings[landings.len() / 2].position[axis];
-        let ends = [
-            landings.partition_point(|landing| landing.position[axis] < middle),
-            landings.partition_point(|landing| landing.position[axis] <= middle),
-        ];
+        let first = landings.partition_point(|landing| landing.position[axis] < middle);
+        let second = landings.partition_point(|landing| landing.position[axis] <= middle);
         let off = |end: usize| end.abs_diff(landings.len() / 2);
-        let [first, second] = ends;
+        // Either may be an end of all, but not both.
         let part = if second == landings.len() || first > 0 && off(first) <= off(second) { first } else { second };
         let (below, above) = landings.split_at_mut(part);
         let (node, at) = (self.nodes.len(), above[0].position[axis]);
