@@ -202,10 +202,10 @@ sphere = { centre = [0, 0.8, 0], radius = "0.05 m" }
     // The fewest that are sent.
     let packets = 65_536.0_f64;
     let landings = guiding::landings(&built.scene, &built.settings, 1, 1);
-    // Of straight ones every 16th packet tells.
-    let each = (landings.polished.len() + 16 * landings.plain.len()) as f64 / packets;
-    // The number is geometric: of second moment (1 + ρ)/(1 − ρ)², and of those packets no more. Five standard errors.
-    let error = 5.0 * (1.9_f64 / 0.01 / (packets / 16.0)).sqrt();
+    let each: f64 = landings.polished.iter().chain(&landings.plain).map(|landing| landing.weight).sum();
+    // The number is geometric: of second moment (1 + ρ)/(1 − ρ)². Of straight ones every 16th packet tells, 28 of 32 rounds count, a packet counts for
+    // 1/0.3 at most. Five standard errors.
+    let error = 5.0 * (1.9_f64 / 0.01 / 0.3 / (packets / 16.0 * 28.0 / 32.0)).sqrt();
     assert!(each > 9.0 - error && each < 10.0 + error, "{each}");
     assert!(landings.polished.len() > landings.plain.len());
 }

@@ -2,7 +2,7 @@
 //!
 //! What glass gathers on a floor is light that comes from a few directions, and a path that leaves the floor in any direction seldom runs
 //! through the glass into the lamp: a few samples are very bright, all others see none of it. Packets of flux that are sent before the picture is
-//! taken land there, and tell the directions. They are sorted into the leaves of a tree, up to 256 in each, and a direction is drawn by
+//! taken land there, and tell the directions. They are sorted into the leaves of a tree, up to 512 in each, and a direction is drawn by
 //!
 //! ```text
 //! p(ω) = a g(ω) + (1 − a) p_f(ω)
@@ -11,7 +11,7 @@
 //!
 //! ω_j, w_j: directions that the packets of the leaf came from, and their flux to the power of 3/4, so that faint ones, which are very bright where they
 //! are found by chance, are found more often (they go either way at glass alike, so that places that the fainter of both alone lights are known as
-//! well); r_j: 6/5 of the distance from ω_j to the sixth nearest other of them; C is uniform on a cap of the sphere, whose area is π r² for the chord r; p_f: the material's own density. The share a is the larger the more of the packets
+//! well); r_j: 6/5 of the distance from ω_j to the eighth nearest other of them; C is uniform on a cap of the sphere, whose area is π r² for the chord r; p_f: the material's own density. The share a is the larger the more of the packets
 //! that come to the leaf in a roundabout way came over polished surfaces, and never is 1, so that no direction is left out. The density is known
 //! for every direction, so that nothing is biased, whatever the packets found; it takes the place of the material's wherever ways of finding
 //! a light are weighed against each other.
@@ -34,13 +34,13 @@ use crate::math::sampling::{cone, split};
 use crate::render::material::Material;
 
 /// Most packets of a leaf.
-const LEAF: usize = 256;
+const LEAF: usize = 512;
 /// Caps that are looked at together.
 const LANES: usize = 8;
 /// Fewer landings than this say nothing.
 const LEAST: usize = 256;
 /// Which of the nearest other directions tells how wide a cap is, and how much wider it is than that.
-const NEAREST: usize = 6;
+const NEAREST: usize = 8;
 const WIDER: f64 = 1.2;
 /// w_j is this power of the packet's flux.
 const FLATTER: f64 = 0.75;

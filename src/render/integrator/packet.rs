@@ -18,6 +18,10 @@ use crate::render::ray::{Crossing, Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
 
+/// What makes a packet leave a light: uniform numbers in [0, 1), of which the first chooses the light and the others are those of
+/// [`Light::emit`](crate::render::light::Light::emit).
+pub type Start = [f64; 6];
+
 /// A packet.
 #[derive(Debug)]
 pub struct Packet<'a> {
@@ -108,6 +112,11 @@ impl<'a> Packet<'a> {
     pub fn emit(&mut self, sampler: &mut Sampler) -> Option<(Ray, Origin)> {
         let [choice, u0, u1, hero] = sampler.four();
         let [u2, u3, u4, _] = sampler.four();
+        self.emit_from([choice, u0, u1, u2, u3, u4], hero)
+    }
+
+    /// The same from numbers that are given; `hero` is uniform in [0, 1) and draws the band that it keeps where it has to be split.
+    pub fn emit_from(&mut self, [choice, u0, u1, u2, u3, u4]: Start, hero: f64) -> Option<(Ray, Origin)> {
         let (light, probability) = self.shares.draw(choice)?;
         let ray = self.scene.lights()[light].emit([u0, u1, u2, u3, u4], &mut self.flux)?;
         self.flux.iter_mut().for_each(|f| *f /= probability);
