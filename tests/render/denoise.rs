@@ -93,23 +93,29 @@ fn a_room_is_nearer_to_the_truth_than_it_was_sampled() {
         rows.flat_map(|row| row[(channels - 2) * 48..][..48].iter().map(|v| f64::from(*v))).collect()
     };
     let truth = luminance(&picture(&built, &Settings { seed: 99, ..built.settings.clone() }, 2048).0);
+    // Squared errors: as filtered, as stated, as sampled.
+    let errors = |seed: u64, samples: u64| {
+        let settings = Settings { seed, ..built.settings.clone() };
+        let mut picture = filtered(&built, &settings, samples);
+        let plain = luminance(&self::picture(&built, &settings, samples).0);
+        [error(&luminances(&mut picture), &truth), picture.price().after.powi(2), error(&plain, &truth)]
+    };
+    let [squared, stated, plain] =
+        (0..8).map(|seed| errors(seed, 64)).fold([0.0; 3], |sums, e| std::array::from_fn(|i| sums[i] + e[i] / 8.0));
+    println!("64 samples: filtered {squared:.2e}, stated {stated:.2e}, as sampled {plain:.2e}");
+    assert!(squared < 0.5 * plain && squared < 1.5 * stated, "{squared} {stated} {plain}");
+    // Of half as many the picture in the middle: one in sixteen has a pixel beneath the glass that is far too dark, as nothing found what lights it,
+    // and the mean of squares relative to what was found is that pixel's.
     let (mut of_stated, mut of_plain): (Vec<f64>, Vec<f64>) = (0..15)
-        .map(|seed| {
-            let settings = Settings { seed, ..built.settings.clone() };
-            let mut picture = filtered(&built, &settings, 32);
-            let squared = error(&luminances(&mut picture), &truth);
-            let plain = error(&luminance(&self::picture(&built, &settings, 32).0), &truth);
-            (squared / picture.price().after.powi(2), squared / plain)
-        })
+        .map(|seed| errors(seed, 32))
+        .map(|[squared, stated, plain]| (squared / stated, squared / plain))
         .unzip();
-    // Of the picture in the middle: one in sixteen has a pixel beneath the glass that is far too dark, as nothing found what lights it, and the mean
-    // of squares relative to what was found is that pixel's.
     let middle = |ratios: &mut Vec<f64>| {
         ratios.sort_by(f64::total_cmp);
         ratios[7]
     };
     let ratios = [middle(&mut of_stated), middle(&mut of_plain)];
-    println!("of what is stated {:.2}, of what was sampled {:.2}", ratios[0], ratios[1]);
+    println!("32 samples: of what is stated {:.2}, of what was sampled {:.2}", ratios[0], ratios[1]);
     assert!(ratios[0] < 1.5 && ratios[1] < 0.5, "{of_stated:?} {of_plain:?}");
 }
 
