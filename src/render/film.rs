@@ -2,8 +2,6 @@
 
 mod records;
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::bands::Bands;
@@ -15,7 +13,7 @@ use super::integrator::virtual_lights::{self, VirtualLights};
 use super::lanes::weighted;
 use super::light::shares::Shares;
 use super::measure::Settings;
-use super::noise::{Gathered, Noise, Together};
+use super::noise::{Gathered, Noise, Together, in_common};
 use super::packets::{PacketPicture, Task};
 use super::sampler::Sampler;
 use super::scatter::{self, Scatter, Scattered};
@@ -35,12 +33,24 @@ const SURVEYED: u64 = u32::MAX as u64;
 const TRIAL: u64 = SURVEYED - 1;
 /// And those of the packets that guide.
 const LEARNT: u64 = SURVEYED - 2;
+/// One of so many strips is tried, of small pictures more: of as many pixels as these at least, or all.
+const SPARSE: usize = 8;
+const TRIED: usize = 1024;
 /// One packet for so many samples is sent to guide them.
 const PACKET: u64 = 2;
 /// What guiding finds is seldom seen without it, so that a few samples make it look dearer than it is: by no more than this.
 const UNSEEN: f64 = 2.0;
 /// The bit in which the streams of their virtual lights differ from them.
 const VIRTUAL: u64 = 1 << 30;
+
+/// Pixels of a strip at most, unless it is a single row: rows that have their virtual lights in common and are rendered in one go.
+const STRIP: usize = 1024;
+
+/// Rows of a strip of a picture of so many columns, 4, 2 or 1: parts of a render are made of whole strips, the first of which begins with the first row.
+#[must_use]
+pub fn strip(columns: usize) -> usize {
+    [scatter::BLOCK, scatter::BLOCK / 2].into_iter().find(|rows| rows * columns <= STRIP).unwrap_or(1)
+}
 
 /// Samples of a pixel that [`Film::survey`] takes in a picture of `samples` a pixel.
 #[must_use]
@@ -171,20 +181,18 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         if !adaptive {
             return;
         }
-        let (width, height) = (self.description.width, self.description.height);
-        let mut scatter = Scatter::new(width, height);
-        let rows: Vec<Vec<Scattered>> = (0..height)
-            .into_par_iter()
+        let mut scatter = Scatter::new(self.description.width, self.description.height);
+        let blocks: Vec<(usize, Vec<Scattered>)> = (self.strips().into_par_iter())
             .map_init(
                 || self.tracer(Way { branches: 1, ..self.way }, self.guide.as_ref()),
-                |tracer, y| {
-                    let row = self.surveyed(tracer, y, self.samples / SURVEY, SURVEYED);
-                    (self.progress)(width as u64 * (self.samples / SURVEY));
-                    row
+                |tracer, strip| {
+                    let blocks = self.surveyed(tracer, strip, self.samples / SURVEY, SURVEYED);
+                    (self.progress)((strip.width * strip.height) as u64 * (self.samples / SURVEY));
+                    (strip.y, blocks)
                 },
             )
             .collect();
-        rows.iter().enumerate().for_each(|(y, row)| scatter.add(y, row));
+        blocks.iter().for_each(|(y, blocks)| scatter.add(*y, blocks));
         self.shares = Some(scatter.samples(self.rays));
     }
 
@@ -236,23 +244,33 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         virtual_lights.into_iter().flat_map(with).collect()
     }
 
-    /// The work and the noise of a way of taking samples, by a few samples of every eighth row.
+    /// The strips of the picture.
+    fn strips(&self) -> Vec<Region> {
+        let rows = strip(self.description.width);
+        let height = self.description.height;
+        let first = (0..height).step_by(rows);
+        first.map(|y| Region::rows(&self.description, y, rows.min(height - y))).collect()
+    }
+
+    /// The work and the noise of a way of taking samples, by a few samples of every eighth strip, of small pictures of more.
     fn attempt(&self, way: Way, guide: Option<&Guide>) -> Attempt {
         // Rays of a pixel: two are the fewest that scatter.
         let rays = if way.branches == 1 { 4 } else { 2 };
-        let (width, height) = (self.description.width, self.description.height);
-        let rows: Vec<usize> = (0..height).step_by(2 * scatter::BLOCK).collect();
-        let rows: Vec<_> = (rows.into_par_iter())
-            .map(|y| {
+        let strips = self.strips();
+        let every = (self.description.width * self.description.height / TRIED).clamp(1, SPARSE);
+        let first = ((every - 1) / 2).min(strips.len() - 1);
+        let tried: Vec<Region> = strips.into_iter().skip(first).step_by(every).collect();
+        let tried: Vec<_> = (tried.into_par_iter())
+            .map(|strip| {
                 let mut tracer = self.tracer(way, guide);
-                let row = self.surveyed(&mut tracer, y, rays, TRIAL);
-                (y, row, tracer.effort())
+                let blocks = self.surveyed(&mut tracer, strip, rays, TRIAL);
+                (strip.y, blocks, tracer.effort())
             })
             .collect();
-        let mut scatter = Scatter::new(width, height);
-        rows.iter().for_each(|(y, row, _)| scatter.add(*y, row));
+        let mut scatter = Scatter::new(self.description.width, self.description.height);
+        tried.iter().for_each(|(y, blocks, _)| scatter.add(*y, blocks));
         #[expect(clippy::cast_precision_loss, reason = "2 or 4")]
-        let work = rows.iter().map(|row| row.2).sum::<f64>() / rays as f64;
+        let work = tried.iter().map(|strip| strip.2).sum::<f64>() / rays as f64;
         Attempt { way, work, variance: scatter.noise().powi(2) }
     }
 
@@ -268,72 +286,74 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         }
     }
 
-    /// Luminances of some samples of each pixel of a row, by block; `streams` tells their random numbers from others.
-    fn surveyed(&self, tracer: &mut PathTracer<'_>, y: usize, samples: u64, streams: u64) -> Vec<Scattered> {
+    /// Luminances of some samples of each pixel of a strip, by block; `streams` tells their random numbers from others.
+    fn surveyed(&self, tracer: &mut PathTracer<'_>, strip: Region, samples: u64, streams: u64) -> Vec<Scattered> {
         let width = self.description.width;
-        let mut pixels = vec![(Gathered::default(), 0.0); width];
-        self.columns(
-            tracer,
-            y,
-            (0..width, streams),
-            |_| samples,
-            |x, _, sample, work| {
-                pixels[x].1 += work;
-                let luminance = sample.map_or(0.0, |(sample, _)| weighted(sample, &self.luminous));
-                if f64::is_finite(luminance) {
-                    pixels[x].0.add(luminance);
-                }
-            },
-        );
-        let mut row = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
-        for (x, (pixel, work)) in pixels.iter().enumerate() {
+        let mut pixels = vec![(Gathered::default(), 0.0); strip.width * strip.height];
+        let number = |_, _| samples;
+        self.take(tracer, (strip, streams), number, |place, _, sample, work| {
+            pixels[place].1 += work;
+            let luminance = sample.map_or(0.0, |(sample, _)| weighted(sample, &self.luminous));
+            if f64::is_finite(luminance) {
+                pixels[place].0.add(luminance);
+            }
+        });
+        let mut blocks = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
+        for (place, (pixel, work)) in pixels.iter().enumerate() {
             let packets = self.packets.as_ref();
-            let known = packets.map_or(0.0, |p| p.luminance(y * width + x, self.tristimulus).0);
-            row[x / scatter::BLOCK].add(pixel, known, *work);
+            let known = packets.map_or(0.0, |p| p.luminance(strip.y * width + place, self.tristimulus).0);
+            blocks[place % width / scatter::BLOCK].add(pixel, known, *work);
         }
-        row
+        blocks
     }
 
-    /// Takes the samples of some pixels of a row, with virtual lights the first of all pixels, then the second of all. `number` is how many
-    /// a pixel of the row has; `take` is told the pixel's column, the sample's stream and index, what it is, if the lens shows anything there, and the
-    /// work that it took.
-    fn columns(
+    /// Takes the samples of the pixels of a region within a strip, with virtual lights the first of all pixels, then the second of all. `number` is how
+    /// many the pixel of a column and a row has; `take` is told the pixel's place in the region, row by row, the sample's stream and index, what it
+    /// is, if the lens shows anything there, and the work that it took.
+    fn take(
         &self,
         tracer: &mut PathTracer<'_>,
-        y: usize,
-        (columns, streams): (Range<usize>, u64),
-        number: impl Fn(usize) -> u64,
+        (region, streams): (Region, u64),
+        number: impl Fn(usize, usize) -> u64,
         mut take: impl FnMut(usize, (u64, u64), Option<(&[f64], &Sight)>, f64),
     ) {
         let width = self.description.width;
-        let stream = |x: usize| stream(self.instrument + streams, y * width + x);
+        let rows = region.y..region.y + region.height;
+        let places = rows.flat_map(|y| (region.x..region.x + region.width).map(move |x| (x, y)));
+        let pixel = |(x, y)| {
+            let own = stream(self.instrument + streams, y * width + x);
+            (own, self.settings.sampler(own))
+        };
         if tracer.virtual_lights().is_none() {
-            for x in columns {
-                let own = stream(x);
-                let mut sampler = self.settings.sampler(own);
-                for index in 0..number(x) {
+            for (place, (x, y)) in places.enumerate() {
+                let (own, mut sampler) = pixel((x, y));
+                for index in 0..number(x, y) {
                     sampler.start(index);
                     let (sample, work) = self.sample(tracer, x, y, &mut sampler);
-                    take(x, (own, index), sample, work);
+                    take(place, (own, index), sample, work);
                 }
             }
             return;
         }
-        // The sets are those of the whole row, whichever part of it is rendered.
-        let numbers: Vec<u64> = (0..width).map(number).collect();
-        let own = |x| (x, stream(x), self.settings.sampler(stream(x)));
-        let mut pixels: Vec<(usize, u64, Sampler)> = columns.map(own).collect();
+        // The sets are those of the whole strip, whichever part of it is rendered.
+        let rows = strip(width);
+        let first = region.y / rows * rows;
+        let all = (first..self.description.height.min(first + rows)).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let all: Vec<u64> = all.map(|(x, y)| number(x, y)).collect();
+        let mut pixels: Vec<_> = places.map(|(x, y)| ((x, y), number(x, y), pixel((x, y)))).collect();
         let mut sets = virtual_lights::Sets::new(
-            self.settings.sampler(estimate::stream(self.instrument + (streams ^ VIRTUAL), y)),
+            self.settings.sampler(estimate::stream(self.instrument + (streams ^ VIRTUAL), first)),
         );
-        for index in 0..numbers.iter().copied().max().unwrap_or(0) {
+        for index in 0..all.iter().copied().max().unwrap_or(0) {
             if let Some(lights) = tracer.virtual_lights() {
-                sets.next(lights, numbers.iter().filter(|n| **n > index).count(), width);
+                sets.next(lights, all.iter().filter(|n| **n > index).count(), all.len());
             }
-            for (x, own, sampler) in pixels.iter_mut().filter(|(x, ..)| numbers[*x] > index) {
-                sampler.start(index);
-                let (sample, work) = self.sample(tracer, *x, y, sampler);
-                take(*x, (*own, index), sample, work);
+            for (place, ((x, y), number, (own, sampler))) in pixels.iter_mut().enumerate() {
+                if *number > index {
+                    sampler.start(index);
+                    let (sample, work) = self.sample(tracer, *x, *y, sampler);
+                    take(place, (*own, index), sample, work);
+                }
             }
         }
     }
@@ -360,23 +380,33 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         (Some((tracer.found(), tracer.sight())), work)
     }
 
-    /// Renders whole rows: the noise and the samples of all channels, one behind the other, of each. What [`Film::noise`] says stays.
+    /// Renders whole strips, given by their rows: the noise and the samples of all channels, one behind the other, of each row. What [`Film::noise`]
+    /// says stays.
     #[must_use]
     pub fn rows(&mut self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
         self.send();
         let this = &*self;
         let channels: Vec<usize> = (0..this.description.channels.len()).collect();
-        rows.par_iter()
+        let row = this.description.width * channels.len();
+        (this.regions(rows).into_par_iter())
             .map_init(
                 || this.tracer(this.way, this.guide.as_ref()),
-                |tracer, &y| {
-                    let region = Region::rows(&this.description, y, 1);
-                    let mut samples = vec![0.0; region.width * channels.len()];
-                    let noise = this.row(tracer, region, y, &channels, &mut samples);
-                    (noise, samples)
+                |tracer, strip| {
+                    let mut samples = vec![0.0; strip.height * row];
+                    let noise = this.strip(tracer, strip, &channels, &mut samples);
+                    let rows = samples.chunks_exact(row).map(<[f32]>::to_vec);
+                    noise.into_iter().zip(rows).collect::<Vec<_>>()
                 },
             )
+            .flatten_iter()
             .collect()
+    }
+
+    /// Rows, from the top, by the strips that they belong to.
+    fn regions(&self, rows: &[usize]) -> Vec<Region> {
+        let strip = strip(self.description.width);
+        let regions = rows.chunk_by(|a, b| a / strip == b / strip);
+        regions.map(|rows| Region::rows(&self.description, rows[0], rows.len())).collect()
     }
 
     /// Samples of a pixel.
@@ -384,34 +414,38 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         self.shares.as_ref().map_or(self.rays, |shares| u64::from(shares[y * self.description.width + x]))
     }
 
-    fn row(&self, tracer: &mut PathTracer<'_>, region: Region, y: usize, channels: &[usize], out: &mut [f32]) -> Noise {
+    /// Renders a region within a strip: the noise of each row.
+    fn strip(&self, tracer: &mut PathTracer<'_>, region: Region, channels: &[usize], out: &mut [f32]) -> Vec<Noise> {
         let (width, bands) = (self.description.width, self.tristimulus.len());
-        let mut pixels = vec![Gathered::default(); region.width];
-        let mut sums = vec![0.0; region.width * bands];
-        let number = |x: usize| self.number(x, y);
+        let mut pixels = vec![Gathered::default(); region.width * region.height];
+        let mut sums = vec![0.0; pixels.len() * bands];
+        let number = |x, y| self.number(x, y);
+        let own = |place: usize| number(region.x + place % region.width, region.y + place / region.width);
         let mut together = Together::default();
-        self.columns(tracer, y, (region.x..region.x + region.width, 0), number, |x, (stream, index), sample, _| {
-            let pixel = &mut pixels[x - region.x];
+        self.take(tracer, (region, 0), number, |place, (stream, index), sample, _| {
+            let pixel = &mut pixels[place];
             let mut luminance = 0.0;
             if let Some((sample, _)) = sample {
                 if !pixel.faults.accept(sample, stream, index) {
                     return;
                 }
-                sums[(x - region.x) * bands..].iter_mut().zip(sample).for_each(|(sum, s)| *sum += s);
+                sums[place * bands..].iter_mut().zip(sample).for_each(|(sum, s)| *sum += s);
                 luminance = weighted(sample, &self.luminous);
             }
-            together.add(index, pixel, luminance, (number(x), 1.0));
+            together.add(index, pixel, luminance, (own(place), 1.0));
             pixel.add(luminance);
         });
         let mut values = vec![0.0; self.description.channels.len()];
-        let mut noise = Noise::default();
-        for (column, (gathered, sums)) in pixels.iter().zip(sums.chunks_exact(bands)).enumerate() {
+        let mut noises = vec![Noise::default(); region.height];
+        for (place, (gathered, sums)) in pixels.iter().zip(sums.chunks_exact(bands)).enumerate() {
+            let (row, column) = (place / region.width, place % region.width);
             let (bands, xyz) = values.split_at_mut(bands);
             bands.iter_mut().zip(sums).for_each(|(b, sum)| *b = sum / gathered.count.max(1.0));
-            noise.append(&self.pixel(gathered, y * width + region.x + column, bands));
+            noises[row].append(&self.pixel(gathered, (region.y + row) * width + region.x + column, bands));
             for (component, sum) in xyz.iter_mut().enumerate() {
                 *sum = bands.iter().zip(self.tristimulus).map(|(b, t)| b * t[component]).sum();
             }
+            let out = &mut out[row * channels.len() * region.width..];
             for (place, channel) in channels.iter().enumerate() {
                 #[expect(clippy::cast_possible_truncation, reason = "pixels are f32")]
                 let sample = values[*channel] as f32;
@@ -419,10 +453,10 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             }
         }
         if tracer.virtual_lights().is_some() {
-            noise.variance = together.variance();
+            in_common(&mut noises, together.variance());
         }
-        (self.progress)(region.width as u64 * self.samples);
-        noise
+        (self.progress)((region.width * region.height) as u64 * self.samples);
+        noises
     }
 
     /// What a pixel adds to the noise; adds to its bands what packets found there.
@@ -448,6 +482,10 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
         &self.description
     }
 
+    fn block(&self) -> (usize, usize) {
+        (self.description.width, strip(self.description.width))
+    }
+
     fn read(&mut self, region: Region, channels: &[usize], out: &mut [f32]) -> Result<(), Error> {
         source::check(&self.description, region, channels, out);
         if out.is_empty() {
@@ -455,13 +493,21 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
         }
         self.send();
         let this = &*self;
-        let rows: Vec<Noise> = out
-            .par_chunks_mut(region.width * channels.len())
-            .enumerate()
+        let row = region.width * channels.len();
+        let all: Vec<usize> = (region.y..region.y + region.height).collect();
+        let mut left = out;
+        let mut parts = Vec::new();
+        for strip in this.regions(&all) {
+            let (part, rest) = left.split_at_mut(strip.height * row);
+            left = rest;
+            parts.push((Region { x: region.x, width: region.width, ..strip }, part));
+        }
+        let rows: Vec<Noise> = (parts.into_par_iter())
             .map_init(
                 || this.tracer(this.way, this.guide.as_ref()),
-                |tracer, (row, out)| this.row(tracer, region, region.y + row, channels, out),
+                |tracer, (strip, out)| this.strip(tracer, strip, channels, out),
             )
+            .flatten_iter()
             .collect();
         rows.iter().for_each(|row| self.noise.append(row));
         Ok(())

@@ -1,4 +1,4 @@
-//! How noisy a picture is: from the scatter of the samples of its pixels, and of the rows that have something in common.
+//! How noisy a picture is: from the scatter of the samples of its pixels, and of the strips that have something in common.
 
 use super::estimate::Faults;
 
@@ -11,8 +11,8 @@ pub struct Noise {
     pub luminance: f64,
     /// Σ of the variances of the pixels' means, estimated from the scatter of their samples. Samples of a pixel are spread
     /// evenly, which this estimate does not know: it errs to the safe side. The first pixel's has the covariances of all pixels that
-    /// packets are seen in, and a row whose pixels have virtual lights in common that of their sum: the sum over a whole picture is n² times
-    /// the variance of its mean.
+    /// packets are seen in, and the first row of a strip whose pixels have virtual lights in common that of their sum, the others 0: the sum over a
+    /// whole picture is n² times the variance of its mean.
     pub variance: f64,
     /// Samples left out of the means.
     pub faults: Faults,
@@ -62,7 +62,7 @@ impl Gathered {
     }
 }
 
-/// The noise of the sum of a row's pixels, which samples of the same number have in common: half the squares of the differences between
+/// The noise of the sum of a strip's pixels, which samples of the same number have in common: half the squares of the differences between
 /// each number's samples and those before.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Together {
@@ -88,4 +88,10 @@ impl Together {
     pub(super) fn variance(&self) -> f64 {
         self.variance + 0.5 * self.difference * self.difference
     }
+}
+
+/// Says of the rows of a strip that the variance of their sum is this one.
+pub(super) fn in_common(rows: &mut [Noise], variance: f64) {
+    rows.iter_mut().for_each(|row| row.variance = 0.0);
+    rows[0].variance = variance;
 }

@@ -2,7 +2,7 @@
 //! machines did.
 //!
 //! ```text
-//! photopic render 5\n
+//! photopic render 6\n
 //! length of the header, u64; header, JSON
 //! per meter point and replicate:  samples, faults, sums per band; checksum
 //! per picture and row:            noise, samples of all channels (f32, channel by channel); checksum
@@ -10,7 +10,8 @@
 //!
 //! All numbers are little-endian. A record counts as done where its checksum (the first 8 bytes of the SHA-256 of the record) is
 //! right; whatever was torn by a break is sampled again, to the same bits, because every random number is a function of the seed
-//! and of what it is for. A file of a share `i/n` holds the replicates r and the rows y with r ≡ y ≡ i (mod n).
+//! and of what it is for. A file of a share `i/n` holds the replicates r and, of pictures, the
+//! [strips](super::film::strip) s with r ≡ s ≡ i (mod n).
 
 use std::io::{Read, Seek, SeekFrom, Write};
 
@@ -21,7 +22,7 @@ use super::estimate::{Faults, REPLICATES, Replicate};
 use super::noise::Noise;
 
 /// The first bytes of a file.
-const MAGIC: &[u8] = b"photopic render 5\n";
+const MAGIC: &[u8] = b"photopic render 6\n";
 /// The longest header that is read, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 const CHECKSUM: usize = 8;
@@ -42,7 +43,7 @@ impl Share {
     /// All of it.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// Whether replicate or row `number` belongs to this share.
+    /// Whether replicate or strip `number` belongs to this share.
     #[must_use]
     pub fn has(self, number: usize) -> bool {
         number % self.count as usize == self.index as usize

@@ -189,7 +189,9 @@ fn they_are_taken_where_they_pay() {
     let ceiling =
         "[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [-2, -2, 3], edges = [[0, 4, 0], [4, 0, 0]] }\n";
     let sky = "[[light]]\nspectrum = \"D65\"\nenvironment = { radiance = \"1 W/m2/sr/nm\" }\n";
-    for (scene, pays) in [(format!("{ROOM}{WALL}{ceiling}{spot}{VIEW}"), true), (format!("{ROOM}{sky}{VIEW}"), false)] {
+    // Large enough that a trial sees where it is bright.
+    let view = VIEW.replace("[12, 10]", "[48, 40]");
+    for (scene, pays) in [(format!("{ROOM}{WALL}{ceiling}{spot}{view}"), true), (format!("{ROOM}{sky}{view}"), false)] {
         let built = built(&format!("[render]\nwavelength_step_nm = 100\n{scene}"));
         let with = |virtual_lights| picture(&built, &settings(&built, 3, virtual_lights), 16).0;
         assert!(with(Some(true)) != with(Some(false)));

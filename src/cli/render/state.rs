@@ -11,14 +11,14 @@ use crate::image::source::{self, Region, Source};
 use crate::render::build::{Built, Kind};
 use crate::render::denoise::record::Layout;
 use crate::render::estimate::REPLICATES;
-use crate::render::film::Film;
+use crate::render::film::{Film, strip};
 use crate::render::measure::Board;
 use crate::render::noise::Noise;
 use crate::render::spool::{Extent, Header, Share, Spool, Task};
 
 /// Meters are stored this often; rows of pictures as they are done.
 const BETWEEN: Duration = Duration::from_secs(5);
-/// Rows rendered before they are stored.
+/// Rows rendered before they are stored: whole strips.
 const ROWS: usize = 16;
 
 /// One file that holds everything, or several that hold a share each.
@@ -116,7 +116,7 @@ impl State {
         self.files[0].header()
     }
 
-    /// The file that holds replicate or row `number`.
+    /// The file that holds replicate or strip `number`.
     fn holder(&mut self, number: usize) -> Option<&mut Spool<File>> {
         self.files.iter_mut().find(|f| f.header().share.has(number))
     }
@@ -163,14 +163,20 @@ impl State {
         let wrong = |e: crate::render::spool::Error| Failure::Message(e.to_string());
         let is_joined = self.is_joined;
         let mut missing = Vec::new();
-        for y in 0..film.description().height {
-            if let Some(file) = self.holder(y)
-                && file.row(picture, y).map_err(wrong)?.is_none()
-            {
-                if is_joined {
-                    return Err(unfinished(file.header().share));
-                }
-                missing.push(y);
+        let (width, height) = (film.description().width, film.description().height);
+        let strips = (0..height).step_by(strip(width)).map(|y| y..height.min(y + strip(width)));
+        for (number, rows) in strips.enumerate() {
+            let Some(file) = self.holder(number) else { continue };
+            let mut has = true;
+            for y in rows.clone() {
+                has &= file.row(picture, y).map_err(wrong)?.is_some();
+            }
+            if !has && is_joined {
+                return Err(unfinished(file.header().share));
+            }
+            if !has {
+                // What its rows have in common is known only where all of them are rendered.
+                missing.extend(rows);
             }
         }
         if !missing.is_empty() {
@@ -178,7 +184,7 @@ impl State {
         }
         for rows in missing.chunks(ROWS) {
             for (y, (noise, samples)) in rows.iter().zip(rows_of(film, rows)) {
-                if let Some(file) = self.holder(*y) {
+                if let Some(file) = self.holder(*y / strip(width)) {
                     file.store_row(picture, *y, &noise, &samples).map_err(wrong)?;
                 }
             }
@@ -201,7 +207,8 @@ impl State {
     /// A row of a picture.
     fn row(&mut self, picture: usize, y: usize) -> std::io::Result<(Noise, Vec<f32>)> {
         let missing = || std::io::Error::other(format!("row {y} was not rendered; expected a share that is whole"));
-        let file = self.holder(y).ok_or_else(missing)?;
+        let strip = strip(self.header().pictures[picture].width);
+        let file = self.holder(y / strip).ok_or_else(missing)?;
         file.row(picture, y).map_err(std::io::Error::other)?.ok_or_else(missing)
     }
 

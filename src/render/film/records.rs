@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 
 use super::{Film, SURVEYED};
+use crate::image::source::Region;
 use crate::render::denoise::record::{Half, Layout, See};
 use crate::render::denoise::{Denoised, denoise};
 use crate::render::estimate::stream;
 use crate::render::integrator::path::PathTracer;
 use crate::render::lanes::weighted;
-use crate::render::noise::{Gathered, Noise, Together};
+use crate::render::noise::{Gathered, Noise, Together, in_common};
 
 /// Rays of a pixel at least: one of a half does not tell its noise, and what the other half says of it is not told apart from that one's own.
 const FEWEST: u64 = 4;
@@ -23,12 +24,16 @@ const MOST_LOOKS: u64 = 16;
 const AT_EDGES: u64 = 64;
 
 impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
-    /// Renders whole rows as they are kept to be filtered: the noise and the record of each, of the form that [`Layout`] has. For pictures without
+    /// Renders whole strips, given by their rows, as they are kept to be filtered: the noise and the record of each row, of the form that [`Layout`] has. For pictures without
     /// packets, of four samples a pixel or more.
     #[must_use]
     pub fn records(&self, rows: &[usize]) -> Vec<(Noise, Vec<f32>)> {
-        rows.par_iter()
-            .map_init(|| self.tracer(self.way, self.guide.as_ref()).seeing(), |tracer, &y| self.record(tracer, y))
+        (self.regions(rows).into_par_iter())
+            .map_init(
+                || self.tracer(self.way, self.guide.as_ref()).seeing(),
+                |tracer, strip| self.record(tracer, strip),
+            )
+            .flatten_iter()
             .collect()
     }
 
@@ -42,41 +47,44 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
         (noise, denoise(self.description.clone(), self.tristimulus, &rows))
     }
 
-    fn record(&self, tracer: &mut PathTracer<'_>, y: usize) -> (Noise, Vec<f32>) {
-        let (width, layout) = (self.description.width, Layout { bands: self.tristimulus.len() });
-        let mut record = vec![0.0; layout.channels() * width];
-        let mut pixels = vec![Gathered::default(); width];
+    fn record(&self, tracer: &mut PathTracer<'_>, strip: Region) -> Vec<(Noise, Vec<f32>)> {
+        let (width, layout) = (strip.width, Layout { bands: self.tristimulus.len() });
+        let mut records = vec![vec![0.0; layout.channels() * width]; strip.height];
+        let mut pixels = vec![Gathered::default(); width * strip.height];
         let mut together = 0.0;
-        let all = |x: usize| self.number(x, y).max(FEWEST);
+        let all = |x: usize, y: usize| self.number(x, y).max(FEWEST);
         for (half, streams) in [0, OTHER_HALF].into_iter().enumerate() {
-            let number = |x: usize| if half == 0 { all(x) / 2 } else { all(x).div_ceil(2) };
-            let mut halves = vec![Half::new(layout.bands); width];
+            let number = |x: usize, y: usize| if half == 0 { all(x, y) / 2 } else { all(x, y).div_ceil(2) };
+            let mut halves = vec![Half::new(layout.bands); pixels.len()];
             let mut noise = Together::default();
-            self.columns(tracer, y, (0..width, streams), number, |x, (stream, index), sample, _| {
+            self.take(tracer, (strip, streams), number, |place, (stream, index), sample, _| {
                 let luminance = match sample {
-                    Some((sample, _)) if !pixels[x].faults.accept(sample, stream, index) => return,
+                    Some((sample, _)) if !pixels[place].faults.accept(sample, stream, index) => return,
                     Some((sample, _)) => weighted(sample, &self.luminous),
                     None => 0.0,
                 };
-                let share = number(x) as f64 / all(x) as f64;
-                noise.add(index, halves[x].luminance(), luminance, (number(x), share));
-                halves[x].add(sample, self.camera.position(), luminance);
-                pixels[x].add(luminance);
+                let (x, y) = (place % width, strip.y + place / width);
+                let share = number(x, y) as f64 / all(x, y) as f64;
+                noise.add(index, halves[place].luminance(), luminance, (number(x, y), share));
+                halves[place].add(sample, self.camera.position(), luminance);
+                pixels[place].add(luminance);
             });
             together += noise.variance();
-            Half::write(&halves, layout, half, &mut record);
+            let rows = halves.chunks_exact(width).zip(&mut records);
+            rows.for_each(|(halves, record)| Half::write(halves, layout, half, record));
         }
-        (0..width).for_each(|x| self.look(tracer, x, y).write(layout, x, width, &mut record));
-        let mut noise = Noise::default();
-        for pixel in &pixels {
+        let mut noises = vec![Noise::default(); strip.height];
+        for (place, pixel) in pixels.iter().enumerate() {
+            let (x, row) = (place % width, place / width);
+            self.look(tracer, x, strip.y + row).write(layout, x, width, &mut records[row]);
             let (luminance, variance) = (pixel.mean, pixel.variance());
-            noise.append(&Noise { pixels: 1, luminance, variance, faults: pixel.faults });
+            noises[row].append(&Noise { pixels: 1, luminance, variance, faults: pixel.faults });
         }
         if tracer.virtual_lights().is_some() {
-            noise.variance = together;
+            in_common(&mut noises, together);
         }
-        (self.progress)(width as u64 * self.samples);
-        (noise, record)
+        (self.progress)((width * strip.height) as u64 * self.samples);
+        noises.into_iter().zip(records).collect()
     }
 
     /// What a few rays of a pixel see.
