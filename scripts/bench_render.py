@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times photopic's renderer beside Mitsuba 3.9.1 on the benchmark scenes of ../shared/render, to equal error.
 
-    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--whole] [--bands] [--denoise] [--denominators N] [--turns N]
+    "$(scripts/venv.sh)" scripts/bench_render.py [target/release/photopic] [--scenes cornell,blob,…] [--solvers path,bidirectional] [--samples N] [--seeds N] [--mitsuba] [--whole] [--bands] [--denoise] [--denominators N] [--turns N] [--reach]
 
 The neutral JSON scenes are written as TOML for photopic, without polarisation, which neither the references nor Mitsuba's renders of them know (with it
 light in the prism differs from theirs by a relMSE of 0.013); the picture's tristimulus values are compared with the two high-sample references
@@ -18,6 +18,8 @@ With --denominators N errors are relative to a picture of N samples a pixel by p
 With --denoise photopic's pictures are also filtered (`--denoise`), at 4, 8 ... samples until the error is below 1e-3: what is filtered does not get
 better as 1/N, so the seconds are those between the last two, along a straight line of logarithms. With --bands as well it is the median error of the
 bands, by the product of the differences from two renders of eight times the samples.
+With --reach photopic renders --samples, twice, four times … as many, Mitsuba four, 16 … times, until the error is below 1e-3, and the seconds are those between
+the last two renders as with --denoise: nothing is said about how the error falls; where a render takes more than half a minute, it is taken to fall as 1/N from there on.
 With --turns N every render is repeated N times and the median of its times counts.
 Exit status 2 where the scenes are not there.
 """
@@ -44,6 +46,8 @@ CANDELA = 106.75026 * 683.002
 ALONE = "rendering"
 # Times that each render is repeated.
 TURNS = 1
+# Seconds of a render beyond which the error is taken to fall as 1/N.
+LONGEST = 30.0
 # Middles of bands of 10 nm.
 BANDS_NM = np.arange(405, 696, 10)
 SELLMEIER = "dielectric = {{ sellmeier = {{ b = {b}, c_um2 = {c} }} }}"
@@ -200,7 +204,8 @@ def compare_bands(binary, name, arguments):
             to = seconds * error / 1e-3
             print(f"{name:12} {what:13} {seconds:8.2f} {np.median(error):10.5f} {np.median(to):10.2f} {to.min():8.2f} to {to.max():.2f}", flush=True)
     if arguments.mitsuba:
-        ratio = rows[1][1][0] * rows[1][2] / (rows[0][1][0] * rows[0][2])
+        # Mitsuba's seconds are those of its render call alone.
+        ratio = rows[1][1][0] * rows[1][2] / (rows[0][1][1] * rows[0][2])
         print(f"{name:12} {'ratio':13} {'':19} {np.median(ratio):10.2f} {ratio.min():8.2f} to {ratio.max():.2f}", flush=True)
     if arguments.denoise:
         # Filtered pictures have a bias: two references that know nothing of one another give the squared error with it.
@@ -212,7 +217,7 @@ def compare_bands(binary, name, arguments):
             each = error.mean((0, 1))
             return np.median(each), f"{each.min():8.5f} to {each.max():.5f}"
 
-        denoised(name, lambda samples: render(samples, 0, ["--denoise"]), judge)
+        reached(name, "denoised", lambda samples: render(samples, 0, ["--denoise"]), judge)
 
 
 def whole(name, samples, call, error):
@@ -236,27 +241,28 @@ def once(name, samples):
         mi.util.write_bitmap(str(Path(folder) / "view.exr"), picture, write_async=False)
 
 
-def denoised(name, run, judge):
-    """Prints filtered renders of ever more samples until one is good enough, and the seconds to it; `judge` gives the error of one, and what else is to be told."""
-    seconds, error = [], []
-    for samples in (2**k for k in range(2, 12)):
-        spent, pixels = run(samples)
+def reached(name, label, run, judge, first=4, step=2, longest=float("inf")):
+    """Prints renders of ever more samples until one is good enough, and the seconds to it; `judge` gives the error of one, and what else is to be told.
+    Where one takes longer than `longest`, the error is taken to fall as 1/N from there on, which is told."""
+    spent, error = [], []
+    for samples in (first * step**k for k in range(18)):
+        seconds, pixels = run(samples)
         off, beside = judge(pixels)
-        seconds.append(spent)
+        spent.append(seconds)
         error.append(off)
-        print(f"{name:12} {f'denoised, {samples}':13} {spent[0]:8.2f} {off:10.5f} {'':10} {beside}", flush=True)
-        print(f"{name:12} {ALONE:13} {spent[1]:8.2f}", flush=True)
-        if error[-1] < 1e-3:
+        for what, one in zip((f"{label}, {samples}", ALONE), seconds):
+            own = f"{off:10.5f} {'':10} {beside}" if what != ALONE else ""
+            print(f"{name:12} {what:15} {one:8.2f} {own}", flush=True)
+        if error[-1] < 1e-3 or seconds[-1] > longest:
             break
-    else:
-        print(f"{name:12} {'denoised':13} not reached", flush=True)
-        return
-    for what, seconds in zip(("denoised", ALONE), np.transpose(seconds)):
-        if len(error) == 1:
-            print(f"{name:12} {what:13} {'':8} {'':10} at most {seconds[0]:.2f}", flush=True)
-            continue
-        at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
-        print(f"{name:12} {what:13} {'':8} {'':10} {at:10.2f}", flush=True)
+    for what, seconds in zip((label, ALONE), np.transpose(spent)):
+        if error[-1] >= 1e-3:
+            print(f"{name:12} {what:15} {'':8} {'':10} {seconds[-1] * error[-1] / 1e-3:10.2f} as 1/N", flush=True)
+        elif len(error) == 1:
+            print(f"{name:12} {what:15} {'':8} {'':10} at most {seconds[0]:.2f}", flush=True)
+        else:
+            at = np.exp(np.interp(np.log(1e-3), np.log(error[:-3:-1]), np.log(seconds[:-3:-1])))
+            print(f"{name:12} {what:15} {'':8} {'':10} {at:10.2f}", flush=True)
 
 
 def main():
@@ -273,6 +279,7 @@ def main():
     parser.add_argument("--once", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--denominators", type=int, default=0, help="errors relative to a picture of so many samples by photopic")
     parser.add_argument("--denoise", action="store_true", help="photopic's filtered pictures as well, of as many samples as they need")
+    parser.add_argument("--reach", action="store_true", help="ever more samples until the error is reached, in place of one number of them")
     parser.add_argument("--turns", type=int, default=1, help="times that each render is repeated; the median of its times counts")
     parser.add_argument("--bands", action="store_true", help="the error of bands of 10 nm in place of luminance")
     arguments = parser.parse_args()
@@ -294,6 +301,23 @@ def main():
         relative_to = None
         if arguments.denominators:
             relative_to = ours(binary, name, arguments.denominators, arguments.step_nm, not arguments.even, "path", seed=10**6)[1] / CANDELA
+        if arguments.reach:
+
+            programs = [("path", 2, float("inf"), lambda samples, seed, name=name: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", seed=seed))]
+            if arguments.mitsuba:
+                # Numbers that are no squares its sampler rounds up.
+                programs.append(("mitsuba", 4, LONGEST, lambda samples, seed, name=name: mitsuba(name, samples, seed=seed + 2)))
+            for program, step, longest, render in programs:
+
+                def of_seeds(samples, name=name, program=program, render=render, relative_to=relative_to):
+                    """The means over the seeds of the seconds and of the error of luminance."""
+                    found = [render(samples, seed) for seed in range(arguments.seeds)]
+                    scale = 1.0 if program == "mitsuba" else CANDELA
+                    error = [errors(xyz / scale, name, relative_to)[0][1] for _, xyz in found]
+                    return np.mean([seconds for seconds, _ in found], axis=0), np.mean(error)
+
+                reached(name, program, of_seeds, lambda error: (error, ""), arguments.samples, step, longest)
+            continue
         run = lambda solver, seed, name=name: ours(binary, name, arguments.samples, arguments.step_nm, not arguments.even, solver, seed=seed)
         runs = [(solver, lambda seed, solver=solver, run=run: run(solver, seed)) for solver in arguments.solvers.split(",")]
         if arguments.mitsuba:
@@ -319,7 +343,7 @@ def main():
                 error, mean = errors(xyz / CANDELA, name, relative_to)
                 return error[1], f"{100 * mean[1]:10.3f} %"
 
-            denoised(name, render, judge)
+            reached(name, "denoised", render, judge)
     return 0
 
 
