@@ -402,10 +402,10 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             .collect()
     }
 
-    /// Rows, from the top, by the strips that they belong to.
+    /// Rows, from the top, in parts that follow one another within a strip.
     fn regions(&self, rows: &[usize]) -> Vec<Region> {
         let strip = strip(self.description.width);
-        let regions = rows.chunk_by(|a, b| a / strip == b / strip);
+        let regions = rows.chunk_by(|a, b| a + 1 == *b && a / strip == b / strip);
         regions.map(|rows| Region::rows(&self.description, rows[0], rows.len())).collect()
     }
 
