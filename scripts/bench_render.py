@@ -48,6 +48,8 @@ ALONE = "rendering"
 TURNS = 1
 # Seconds of a render beyond which the error is taken to fall as 1/N.
 LONGEST = 30.0
+# Samples of what is filtered, at most.
+MOST = 2048
 # Middles of bands of 10 nm.
 BANDS_NM = np.arange(405, 696, 10)
 SELLMEIER = "dielectric = {{ sellmeier = {{ b = {b}, c_um2 = {c} }} }}"
@@ -241,9 +243,10 @@ def once(name, samples):
         mi.util.write_bitmap(str(Path(folder) / "view.exr"), picture, write_async=False)
 
 
-def reached(name, label, run, judge, first=4, step=2, longest=float("inf")):
+def reached(name, label, run, judge, first=4, step=2, longest=None):
     """Prints renders of ever more samples until one is good enough, and the seconds to it; `judge` gives the error of one, and what else is to be told.
-    Where one takes longer than `longest`, the error is taken to fall as 1/N from there on, which is told."""
+    Where one takes longer than `longest`, the error is taken to fall as 1/N from there on, which is told; without it, as with what is filtered, 2048 samples
+    are the most."""
     spent, error = [], []
     for samples in (first * step**k for k in range(18)):
         seconds, pixels = run(samples)
@@ -253,10 +256,12 @@ def reached(name, label, run, judge, first=4, step=2, longest=float("inf")):
         for what, one in zip((f"{label}, {samples}", ALONE), seconds):
             own = f"{off:10.5f} {'':10} {beside}" if what != ALONE else ""
             print(f"{name:12} {what:15} {one:8.2f} {own}", flush=True)
-        if error[-1] < 1e-3 or seconds[-1] > longest:
+        if error[-1] < 1e-3 or (samples >= MOST if longest is None else seconds[-1] > longest):
             break
     for what, seconds in zip((label, ALONE), np.transpose(spent)):
-        if error[-1] >= 1e-3:
+        if error[-1] >= 1e-3 and longest is None:
+            print(f"{name:12} {what:15} not reached", flush=True)
+        elif error[-1] >= 1e-3:
             print(f"{name:12} {what:15} {'':8} {'':10} {seconds[-1] * error[-1] / 1e-3:10.2f} as 1/N", flush=True)
         elif len(error) == 1:
             print(f"{name:12} {what:15} {'':8} {'':10} at most {seconds[0]:.2f}", flush=True)
@@ -302,7 +307,6 @@ def main():
         if arguments.denominators:
             relative_to = ours(binary, name, arguments.denominators, arguments.step_nm, not arguments.even, "path", seed=10**6)[1] / CANDELA
         if arguments.reach:
-
             programs = [("path", 2, float("inf"), lambda samples, seed, name=name: ours(binary, name, samples, arguments.step_nm, not arguments.even, "path", seed=seed))]
             if arguments.mitsuba:
                 # Numbers that are no squares its sampler rounds up.

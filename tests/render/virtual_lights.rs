@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use photopic::image::source::{Region, Source};
 use photopic::render::build::Built;
 use photopic::render::description::Description;
-use photopic::render::film::Film;
+use photopic::render::film::{Film, strip};
 use photopic::render::integrator::virtual_lights;
 use photopic::render::measure::Settings;
 use photopic::render::noise::Noise;
@@ -219,6 +219,11 @@ fn a_part_of_a_picture_is_that_of_the_whole() {
     for y in 0..2 {
         assert_eq!(part[y * 4..][..4], whole[(y + 3) * 12 + 5..][..4]);
     }
+    // Two rows of a strip without the one in between, and one of the next.
+    for (y, (_, row)) in [1, 3, 5].into_iter().zip(film.rows(&[1, 3, 5])) {
+        assert_eq!(row[..12], whole[y * 12..][..12]);
+    }
+    assert_eq!([1, 12, 256, 257, 512, 513, 8192].map(strip), [4, 4, 4, 2, 2, 1, 1]);
 }
 
 /// A room lit by a spot on its floor is rendered by them, a floor under an open sky by paths alone.

@@ -25,6 +25,7 @@ mod set;
 
 use glam::{DVec3, Vec3};
 
+use self::set::{Drawn, Set, Weights, single};
 use super::limits::{Follow, Limits};
 use super::packet::{Packet, Vertex};
 use crate::render::light::shares::Shares;
@@ -32,7 +33,6 @@ use crate::render::material::Transport;
 use crate::render::ray::{Ray, SurfacePoint};
 use crate::render::sampler::Sampler;
 use crate::render::scene::Scene;
-use set::{Drawn, Set, Weights, single};
 
 /// Virtual lights that are drawn for a vertex.
 pub const DRAWS: u32 = 3;
@@ -75,9 +75,7 @@ impl Source {
         let bounds = scene.bounds();
         let middle = 0.5 * bounds.min + 0.5 * bounds.max;
         let reach = (0.5 * bounds.max - 0.5 * bounds.min).max_element() / area.sqrt();
-        // Three coordinates of two places, their differences and a normal, each by half an epsilon; twice that.
-        let rounded = single(16.0 * reach) * f32::EPSILON;
-        let reach = single(reach);
+        let (rounded, reach) = (rounded(reach), single(reach));
         let source = Self { shares: Shares::new(scene.lights(), scene.bands().len()), area, middle, reach, rounded };
         (suits && area > 0.0 && area.is_finite()).then_some(source)
     }
@@ -86,6 +84,12 @@ impl Source {
     fn local(&self, place: DVec3) -> Vec3 {
         ((place - self.middle) / self.area.sqrt()).as_vec3()
     }
+}
+
+/// More than a distance from a plane is rounded in single precision where no coordinate is greater than `reach`: three coordinates of two places, their
+/// differences and a normal, each by half an epsilon, and twice that.
+fn rounded(reach: f64) -> f32 {
+    single(16.0 * reach) * f32::EPSILON
 }
 
 /// The virtual lights of some sets, one of which is in use, and what makes them.

@@ -268,6 +268,7 @@ pub(super) fn single(x: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Stream;
 
     /// Every number of a block, of whole blocks and of what is left over is drawn as often as its weight says.
     #[test]
@@ -301,6 +302,44 @@ mod tests {
             assert_eq!(weights.draw(1.0).map(|drawn| drawn.0), last);
         }
         assert_eq!(Weights::default().draw(0.5), None);
+    }
+
+    /// Single precision beside double: what brings something has a weight, however grazing, and far from the planes that of the formula.
+    #[test]
+    fn none_that_brings_something_is_left_out() {
+        let mut random = Stream::new(2, 7);
+        let reach = 20.0;
+        let (rounded, bound) = (super::super::rounded(reach), 256.0);
+        let mut grazing = 0;
+        for n in 0..2000 {
+            let mut place = || DVec3::from([(); 3].map(|()| reach * (2.0 * random.uniform() - 1.0)));
+            let (from, to) = (place(), place());
+            let way = to - from;
+            // Every other one within 1e-6 of the plane of one of the two.
+            let across = |v: DVec3| (v - way * v.dot(way) / way.length_squared()).normalize();
+            let slope = if n % 2 == 0 { 1e-6 * random.uniform() } else { 0.1 + random.uniform() };
+            let [here, there] = [DVec3::X + DVec3::Y, DVec3::Z - DVec3::Y].map(across);
+            let normal = (here + slope * way.normalize()).normalize();
+            let lit = (there - way.normalize()).normalize();
+            let mut set = Set { shares: vec![1.0], ..Set::default() };
+            let own = [to.x, to.y, to.z, lit.x, lit.y, lit.z].map(single);
+            set.coordinates.iter_mut().zip(own).for_each(|(all, x)| all.push(x));
+            let mut weights = [0.0];
+            let (near, normal32) = (from.as_vec3(), normal.as_vec3());
+            let task = Weigh { set: &set, from: near, normal: normal32, bound, rounded, weights: &mut weights };
+            Arch::new().dispatch(task);
+            let g = way.dot(normal) * -way.dot(lit) / way.length_squared().powi(2);
+            assert!(g > 0.0 && weights[0] > 0.0, "{n}: {g} {}", weights[0]);
+            grazing += u32::from(g < 1e-6 * 4.0 * reach * reach);
+            if n % 2 == 1 {
+                // Both distances are wrong by twice what is added at most, and the places by an epsilon of the scene.
+                let far = way.dot(normal).min(-way.dot(lit));
+                let most = 4.0 * f64::from(rounded) / far + 16.0 * f64::from(f32::EPSILON) * reach / way.length();
+                let expected = g.min(f64::from(bound));
+                assert!((f64::from(weights[0]) / expected - 1.0).abs() < most, "{n}: {g} {} {most}", weights[0]);
+            }
+        }
+        assert!(grazing > 900, "{grazing}");
     }
 
     /// The first cells in the order that Morton gave, the last one, and what is outside.
