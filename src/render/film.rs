@@ -27,12 +27,17 @@ use crate::spectrum::{Per, Quantity, SpectralUnit};
 
 /// One of so many samples is spent on the survey.
 const SURVEY: u64 = 16;
+/// What is looked at to see how noisy it is, is looked at so many times, each with numbers of its own: the scatter of the means is the noise of samples
+/// that lie evenly.
+const TIMES: u64 = 2;
 
 /// Streams of another instrument are the survey's, others those of the trial: the picture's own numbers stay unknown.
 const SURVEYED: u64 = u32::MAX as u64;
 const TRIAL: u64 = SURVEYED - 1;
 /// And those of the packets that guide.
 const LEARNT: u64 = SURVEYED - 2;
+/// By so much those of the second look differ from those of the first.
+const AGAIN: u64 = 1 << 29;
 /// One of so many strips is tried, of small pictures more: of as many pixels as these at least, or all.
 const SPARSE: usize = 8;
 const TRIED: usize = 1024;
@@ -55,7 +60,7 @@ pub fn strip(columns: usize) -> usize {
 /// Samples of a pixel that [`Film::survey`] takes in a picture of `samples` a pixel.
 #[must_use]
 pub fn survey_samples(samples: u64) -> u64 {
-    samples / SURVEY
+    if samples < SURVEY { 0 } else { (samples / SURVEY).max(TIMES) / TIMES * TIMES }
 }
 
 /// Rays of the camera for so many samples: two at least where there are two samples, as one does not tell its noise.
@@ -159,7 +164,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
     }
 
     /// Finds out whether guiding pays and which way of taking samples, where that was not said ([`Settings`]). An adaptive picture is then looked
-    /// at with a sixteenth of the samples to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
+    /// at with a sixteenth of the samples, two at least, to find where it is noisy, and the samples are shared out among the pixels accordingly (as many in
     /// all): those of large relative error σ/(L + ε) get more, those whose samples take much work fewer.
     ///
     /// The samples that it took are thrown away, so that nothing that is done depends on the values of those that count, which would be a
@@ -182,12 +187,13 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
             return;
         }
         let mut scatter = Scatter::new(self.description.width, self.description.height);
+        let samples = survey_samples(self.samples);
         let blocks: Vec<(usize, Vec<Scattered>)> = (self.strips().into_par_iter())
             .map_init(
                 || self.tracer(Way { branches: 1, ..self.way }, self.guide.as_ref()),
                 |tracer, strip| {
-                    let blocks = self.surveyed(tracer, strip, self.samples / SURVEY, SURVEYED);
-                    (self.progress)((strip.width * strip.height) as u64 * (self.samples / SURVEY));
+                    let blocks = self.surveyed(tracer, strip, samples, SURVEYED);
+                    (self.progress)((strip.width * strip.height) as u64 * samples);
                     (strip.y, blocks)
                 },
             )
@@ -254,8 +260,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
 
     /// The work and the noise of a way of taking samples, by a few samples of every eighth strip, of small pictures of more.
     fn attempt(&self, way: Way, guide: Option<&Guide>) -> Attempt {
-        // Rays of a pixel: two are the fewest that scatter.
-        let rays = if way.branches == 1 { 4 } else { 2 };
+        let rays = if way.branches == 1 { 2 * TIMES } else { TIMES };
         let strips = self.strips();
         let every = (self.description.width * self.description.height / TRIED).clamp(1, SPARSE);
         let first = ((every - 1) / 2).min(strips.len() - 1);
@@ -270,8 +275,9 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let mut scatter = Scatter::new(self.description.width, self.description.height);
         tried.iter().for_each(|(y, blocks, _)| scatter.add(*y, blocks));
         #[expect(clippy::cast_precision_loss, reason = "2 or 4")]
-        let work = tried.iter().map(|strip| strip.2).sum::<f64>() / rays as f64;
-        Attempt { way, work, variance: scatter.noise().powi(2) }
+        let (rays, each) = (rays as f64, (rays / TIMES) as f64);
+        let work = tried.iter().map(|strip| strip.2).sum::<f64>() / rays;
+        Attempt { way, work, variance: each * scatter.noise().powi(2) }
     }
 
     fn tracer<'b>(&'b self, way: Way, guide: Option<&'b Guide>) -> PathTracer<'b> {
@@ -286,18 +292,26 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         }
     }
 
-    /// Luminances of some samples of each pixel of a strip, by block; `streams` tells their random numbers from others.
+    /// Luminances of some samples of each pixel of a strip, a multiple of [`TIMES`], by block; `streams` tells their random numbers from others.
     fn surveyed(&self, tracer: &mut PathTracer<'_>, strip: Region, samples: u64, streams: u64) -> Vec<Scattered> {
         let width = self.description.width;
         let mut pixels = vec![(Gathered::default(), 0.0); strip.width * strip.height];
-        let number = |_, _| samples;
-        self.take(tracer, (strip, streams), number, |place, _, sample, work| {
-            pixels[place].1 += work;
-            let luminance = sample.map_or(0.0, |(sample, _)| weighted(sample, &self.luminous));
-            if f64::is_finite(luminance) {
-                pixels[place].0.add(luminance);
+        for time in 0..TIMES {
+            let mut means = vec![Gathered::default(); pixels.len()];
+            let number = |_, _| samples / TIMES;
+            self.take(tracer, (strip, streams ^ (time * AGAIN)), number, |place, _, sample, work| {
+                pixels[place].1 += work;
+                let luminance = sample.map_or(0.0, |(sample, _)| weighted(sample, &self.luminous));
+                if f64::is_finite(luminance) {
+                    means[place].add(luminance);
+                }
+            });
+            for ((pixel, _), mean) in pixels.iter_mut().zip(means) {
+                if mean.count > 0.0 {
+                    pixel.add(mean.mean);
+                }
             }
-        });
+        }
         let mut blocks = vec![Scattered::default(); width.div_ceil(scatter::BLOCK)];
         for (place, (pixel, work)) in pixels.iter().enumerate() {
             let packets = self.packets.as_ref();

@@ -4,8 +4,9 @@
 //! n ∝ σ/(L + L̄/100)/√w        σ, L, w: of the block of pixels and its neighbours
 //! ```
 //!
-//! σ is the scatter within pixels where they have two samples or more, so that edges and textures, which are no noise, count for none.
-//! L counts what is known of the pixels beside the samples, σ does not. w is the work that a sample takes.
+//! σ is the scatter between means of a pixel's samples, each of which is of points of its own that lie evenly, as those of the picture do: so
+//! edges and textures count for no noise, and what points that lie evenly find with few samples counts for little. L counts what is
+//! known of the pixels beside the samples, σ does not; pixels without light count for neither. w is the work that a sample takes.
 //!
 //! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given work Σ n w (Lagrange); the hundredth of the picture's
 //! mean luminance keeps dark pixels from taking all.
@@ -21,55 +22,49 @@ const LEAST: f64 = 0.125;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Scattered {
     pixels: f64,
+    /// Means, and those of pixels with light.
     count: f64,
+    lit: f64,
     sum: f64,
-    /// Σ of their squares, and of the squares of what they are off from their pixel's mean.
-    squares: f64,
+    /// Σ of the squares of what they are off from their pixel's mean.
     within: f64,
     known: f64,
-    /// Of all samples.
     work: f64,
 }
 
 impl Scattered {
-    /// The samples of a pixel, what of its luminance is known beside them, and the work that they took.
+    /// The means of samples of a pixel, what of its luminance is known beside them, and the work that they took.
     pub(super) fn add(&mut self, pixel: &Gathered, known: f64, work: f64) {
-        let Gathered { count, mean, squares, .. } = *pixel;
+        let Gathered { count, mean, squares: within, .. } = *pixel;
         if count > 0.0 {
-            let all = squares + count * mean * mean;
+            let lit = if mean + known > 0.0 { count } else { 0.0 };
             let (sum, known) = (count * mean, count * known);
-            self.append(1.0, Self { pixels: 1.0, count, sum, squares: all, within: squares, known, work });
+            self.append(1.0, Self { pixels: 1.0, count, lit, sum, within, known, work });
         }
     }
 
     fn append(&mut self, weight: f64, other: Self) {
         self.pixels += weight * other.pixels;
         self.count += weight * other.count;
+        self.lit += weight * other.lit;
         self.sum += weight * other.sum;
-        self.squares += weight * other.squares;
         self.within += weight * other.within;
         self.known += weight * other.known;
         self.work += weight * other.work;
     }
 
-    /// σ of a sample: within pixels where any has two or more; else of all together, which what differs from pixel to pixel adds to.
+    /// σ; 0 where no pixel has two means.
     fn deviation(&self) -> f64 {
-        let average = self.sum / self.count;
-        let variance = if self.count > self.pixels {
-            self.within / (self.count - self.pixels)
-        } else {
-            self.squares / self.count - average * average
-        };
-        variance.max(0.0).sqrt()
+        if self.count > self.pixels { (self.within / (self.count - self.pixels)).sqrt() } else { 0.0 }
     }
 
-    /// σ/(L + `dark`) of a sample; 0 without light.
+    /// σ/(L + `dark`); 0 without light.
     fn noise(&self, dark: f64) -> f64 {
-        let luminance = (self.sum + self.known) / self.count + dark;
+        let luminance = (self.sum + self.known) / self.lit + dark;
         if luminance > 0.0 { self.deviation() / luminance } else { 0.0 }
     }
 
-    /// √w; 1 without samples.
+    /// √w, but for a factor that all have in common; 1 without samples.
     fn root_work(&self) -> f64 {
         if self.work > 0.0 { (self.work / self.count).sqrt() } else { 1.0 }
     }
@@ -186,9 +181,7 @@ mod tests {
         let mut scatter = Scatter::new(96, 4);
         let mut row = vec![Scattered::default(); 24];
         for (x, block) in row.iter_mut().enumerate() {
-            for luminance in [0.5, 1.5] {
-                block.add(&pixel(&[luminance]), if x < 12 { 0.0 } else { 2.0 }, 1.0);
-            }
+            block.add(&pixel(&[0.5, 1.5]), if x < 12 { 0.0 } else { 2.0 }, 1.0);
         }
         scatter.add(0, &row);
         let samples = scatter.samples(1 << 20);
@@ -219,10 +212,27 @@ mod tests {
         for luminance in [0.0, 3.0] {
             let mut scatter = Scatter::new(9, 5);
             let mut row = vec![Scattered::default(); 3];
-            row.iter_mut().for_each(|block| block.add(&pixel(&[luminance]), 0.0, 1.0));
+            row.iter_mut().for_each(|block| block.add(&pixel(&[luminance; 2]), 0.0, 1.0));
             (0..5).for_each(|y| scatter.add(y, &row));
             assert!(scatter.samples(7).iter().all(|&n| n == 7));
         }
+    }
+
+    /// At a horizon, blocks a quarter of which is lit have the σ² of a quarter, at the luminance of what is lit: half of the samples.
+    #[test]
+    fn what_is_black_darkens_nothing() {
+        let mut scatter = Scatter::new(96, 4);
+        let mut row = vec![Scattered::default(); 24];
+        for (x, block) in row.iter_mut().enumerate() {
+            for pixel_number in 0..4 {
+                let black = x < 12 && pixel_number > 0;
+                block.add(&pixel(if black { &[0.0, 0.0] } else { &[0.5, 1.5] }), 0.0, 1.0);
+            }
+        }
+        scatter.add(0, &row);
+        let samples = scatter.samples(1 << 20);
+        let share = |x: usize| (f64::from(samples[x]) / f64::from(1 << 20) - LEAST) / (1.0 - LEAST);
+        assert!((share(90) / share(4) - 2.0).abs() < 1e-4, "{} {}", share(4), share(90));
     }
 
     /// A checkerboard without noise takes no more samples than a wall without.
