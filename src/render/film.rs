@@ -27,8 +27,7 @@ use crate::spectrum::{Per, Quantity, SpectralUnit};
 
 /// One of so many samples is spent on the survey.
 const SURVEY: u64 = 16;
-/// What is looked at to see how noisy it is, is looked at so many times, each with numbers of its own: the scatter of the means is the noise of samples
-/// that lie evenly.
+/// Lots of samples, with random numbers of their own each, by which a pixel's noise is found: the scatter of their means.
 const TIMES: u64 = 2;
 
 /// Streams of another instrument are the survey's, others those of the trial: the picture's own numbers stay unknown.
@@ -36,7 +35,7 @@ const SURVEYED: u64 = u32::MAX as u64;
 const TRIAL: u64 = SURVEYED - 1;
 /// And those of the packets that guide.
 const LEARNT: u64 = SURVEYED - 2;
-/// By so much those of the second look differ from those of the first.
+/// The bit in which the streams of the second lot differ from those of the first.
 const AGAIN: u64 = 1 << 29;
 /// One of so many strips is tried, of small pictures more: of as many pixels as these at least, or all.
 const SPARSE: usize = 8;
@@ -57,7 +56,7 @@ pub fn strip(columns: usize) -> usize {
     [scatter::BLOCK, scatter::BLOCK / 2].into_iter().find(|rows| rows * columns <= STRIP).unwrap_or(1)
 }
 
-/// Samples of a pixel that [`Film::survey`] takes in a picture of `samples` a pixel.
+/// Samples of a pixel that [`Film::survey`] takes in a picture of `samples` a pixel: an even number, 0 where it takes none.
 #[must_use]
 pub fn survey_samples(samples: u64) -> u64 {
     if samples < SURVEY { 0 } else { (samples / SURVEY).max(TIMES) / TIMES * TIMES }
@@ -525,5 +524,17 @@ impl<F: Fn(u64) + Send + Sync> Source for Film<'_, F> {
             .collect();
         rows.iter().for_each(|row| self.noise.append(row));
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sixteenth in two lots of one at least, of pictures that are surveyed at all.
+    #[test]
+    fn a_survey_is_of_two_lots() {
+        let samples = [1, 15, 16, 47, 64, 80, 1 << 20];
+        assert_eq!(samples.map(survey_samples), [0, 0, 2, 2, 4, 4, 1 << 16]);
     }
 }

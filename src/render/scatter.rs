@@ -6,7 +6,7 @@
 //!
 //! σ is the scatter between means of a pixel's samples, each of which is of points of its own that lie evenly, as those of the picture do: so
 //! edges and textures count for no noise, and what points that lie evenly find with few samples counts for little. L counts what is
-//! known of the pixels beside the samples, σ does not; pixels without light count for neither. w is the work that a sample takes.
+//! known of the pixels beside the samples, σ does not; pixels without light are no part of L. w is the work that a sample takes.
 //!
 //! So many samples a pixel make the mean of (σ/L)²/n over the picture least for a given work Σ n w (Lagrange); the hundredth of the picture's
 //! mean luminance keeps dark pixels from taking all.
@@ -60,6 +60,7 @@ impl Scattered {
 
     /// σ/(L + `dark`); 0 without light.
     fn noise(&self, dark: f64) -> f64 {
+        // No number where nothing is lit.
         let luminance = (self.sum + self.known) / self.lit + dark;
         if luminance > 0.0 { self.deviation() / luminance } else { 0.0 }
     }
