@@ -16,13 +16,17 @@
 //! for every direction, so that nothing is biased, whatever the packets found; it takes the place of the material's wherever ways of finding
 //! a light are weighed against each other.
 //!
+//! Where more flux lands on an area than does on the average, a path that comes there is worth more than it carries, by so much and by p/p_f of
+//! where it goes: roulette ends it the later. Else few would find what a focus lights, each of them with much light.
+//!
 //! The packets have random numbers of their own and are sent once: nothing depends on the samples that count.
 //!
 //! What cannot be guided are lights without extent behind glass, which no path meets.
 //!
 //! References: H. W. Jensen, *Importance Driven Path Tracing using the Photon Map*, EGWR 1995; J. Vorba et al., *On-line Learning of Parametric
 //! Mixture Models for Light Transport Simulation*, SIGGRAPH 2014; T. Müller, M. Gross, J. Novák, *Practical Path Guiding for Efficient
-//! Light-Transport Simulation*, EGSR 2017 (the tree); E. Veach, thesis, Stanford 1997, ch. 9 (one sample of several densities).
+//! Light-Transport Simulation*, EGSR 2017 (the tree); E. Veach, thesis, Stanford 1997, ch. 9 (one sample of several densities); J. Vorba,
+//! J. Křivánek, *Adjoint-Driven Russian Roulette and Splitting in Light Transport Simulation*, ACM TOG 35(4), 2016 (what a path is worth).
 
 use std::f64::consts::PI;
 
@@ -51,6 +55,8 @@ const WIDE: f64 = 3.0;
 const SQUARES: [f64; 2] = [1e-8, 4.0 / (WIDE * WIDE)];
 /// The share of guided directions is within these bounds.
 const SHARES: [f64; 2] = [0.1, 0.8];
+/// The brightness of a place is at most this.
+const BRIGHTEST: f64 = 1e4;
 /// The time in which a direction's density is found, in searches along a ray, about.
 pub const EFFORT: f64 = 0.3;
 
@@ -87,8 +93,8 @@ pub struct Guide {
 enum Node {
     /// Below a coordinate the next node, else another.
     Split { axis: usize, at: f64, above: usize },
-    /// Its caps, and the share a.
-    Leaf { first: usize, end: usize, share: f64 },
+    /// Its caps, the share a, and the brightness there ([`Guided::brightness`]).
+    Leaf { first: usize, end: usize, share: f64, brightness: f64 },
 }
 
 /// Caps of a leaf, one in each lane; those that fill its last lanes are nowhere and weigh nothing.
@@ -114,6 +120,7 @@ impl Caps {
 pub struct Guided<'a> {
     caps: &'a [Caps],
     share: f64,
+    brightness: f64,
     arch: Arch,
 }
 
@@ -134,9 +141,19 @@ impl Guide {
         guide.grow(&mut landings.polished);
         let mut plain = vec![0.0; guide.nodes.len()];
         landings.plain.iter().for_each(|landing| plain[guide.leaf(landing.position)] += landing.weight);
+        // Until here the one is the weight of the leaf's landings, the other their area.
+        let [mut flux, mut area] = [0.0; 2];
+        for (node, plain) in guide.nodes.iter().zip(&plain) {
+            if let Node::Leaf { share, brightness, .. } = node {
+                flux += share + plain;
+                area += brightness;
+            }
+        }
         for (node, plain) in guide.nodes.iter_mut().zip(plain) {
-            if let Node::Leaf { share, .. } = node {
-                // Until here that is the weight of all landings.
+            if let Node::Leaf { share, brightness, .. } = node {
+                let times = (*share + plain) / *brightness * (area / flux);
+                // What has no area is as bright as any can be; where nothing has, nothing is known.
+                *brightness = if times.is_nan() { 1.0 } else { times.clamp(1.0, BRIGHTEST) };
                 *share = (SHARES[1] * *share / (*share + plain)).max(SHARES[0]);
             }
         }
@@ -145,15 +162,18 @@ impl Guide {
 
     /// Adds the node of some landings and all below it.
     fn grow(&mut self, landings: &mut [Landing]) {
+        let positions = || landings.iter().map(|landing| landing.position);
+        let extent = positions().fold(DVec3::NEG_INFINITY, DVec3::max) - positions().fold(DVec3::INFINITY, DVec3::min);
         if landings.len() <= LEAF {
             let first = self.caps.len();
             self.caps.append(&mut caps(landings));
             let weight = landings.iter().map(|landing| landing.weight).sum();
-            self.nodes.push(Node::Leaf { first, end: self.caps.len(), share: weight });
+            // Of a surface that lies as it will: the two longer sides of its box.
+            let [x, y, z] = extent.to_array();
+            let area = (x * y).max(y * z).max(z * x);
+            self.nodes.push(Node::Leaf { first, end: self.caps.len(), share: weight, brightness: area });
             return;
         }
-        let positions = || landings.iter().map(|landing| landing.position);
-        let extent = positions().fold(DVec3::NEG_INFINITY, DVec3::max) - positions().fold(DVec3::INFINITY, DVec3::min);
         let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
         if extent[axis] == 0.0 {
             // All at one place, where so many are enough.
@@ -190,11 +210,11 @@ impl Guide {
     /// The directions of a place.
     #[must_use]
     pub fn at(&self, position: DVec3) -> Guided<'_> {
-        let (caps, share) = match self.nodes[self.leaf(position)] {
-            Node::Leaf { first, end, share } => (&self.caps[first..end], share),
-            Node::Split { .. } => (&[] as &[Caps], 0.0),
+        let (caps, share, brightness) = match self.nodes[self.leaf(position)] {
+            Node::Leaf { first, end, share, brightness } => (&self.caps[first..end], share, brightness),
+            Node::Split { .. } => (&[] as &[Caps], 0.0, 1.0),
         };
-        Guided { caps, share, arch: self.arch }
+        Guided { caps, share, brightness, arch: self.arch }
     }
 
     /// The density with which a path goes on from a place of a material into a direction, given that of the material's own sampling, 1/sr.
@@ -260,6 +280,12 @@ impl NullaryFnOnce for Density<'_> {
 }
 
 impl Guided<'_> {
+    /// How much more flux of packets lands on an area there than does on the average over all places where any lands; 1 where it is less.
+    #[must_use]
+    pub fn brightness(&self) -> f64 {
+        self.brightness
+    }
+
     /// p(ω) of a unit vector in the world, given p_f, 1/sr.
     #[must_use]
     pub fn density(&self, direction: DVec3, own: f64) -> f64 {
@@ -385,6 +411,32 @@ mod tests {
         let guided = guide.at(there.position);
         assert_eq!(guided.caps.len(), 1);
         assert!(guided.density(there.back, 0.0) > 0.0);
+    }
+
+    /// Half of all land on 0.01 m², half on 1 m²: the one is 0.5/0.01 times 1.01 as bright as the average, but for what the boxes of 512 landings are
+    /// less than their parts.
+    #[test]
+    fn a_focus_is_bright() {
+        let mut numbers = Stream::new(10, 11);
+        let polished: Vec<Landing> = (0..8192)
+            .map(|i| {
+                let [x, y] = [numbers.uniform(), numbers.uniform()];
+                let position = if i % 2 == 0 { DVec3::new(x, 0.0, y) } else { DVec3::new(2.0 + 0.1 * x, 0.0, 0.1 * y) };
+                Landing { position, back: DVec3::Y, weight: 0.25 }
+            })
+            .collect();
+        let guide = Guide::new(Landings { polished, plain: Vec::new() }).expect("a guide");
+        assert_eq!(guide.at(DVec3::new(0.4, 0.0, 0.4)).brightness(), 1.0);
+        let bright = guide.at(DVec3::new(2.04, 0.0, 0.04)).brightness();
+        assert!((bright / 50.5 - 1.0).abs() < 0.1, "{bright}");
+    }
+
+    /// Where all landings are at one place nothing is known of their area.
+    #[test]
+    fn one_place_is_no_brighter() {
+        let landing = Landing { position: DVec3::ONE, back: DVec3::Y, weight: 1.0 };
+        let guide = Guide::new(Landings { polished: vec![landing; 1000], plain: Vec::new() }).expect("a guide");
+        assert_eq!(guide.at(DVec3::ONE).brightness(), 1.0);
     }
 
     /// A direction that a third of the packets came from is found by a third of the guided draws, into caps of 0.1 mrad.

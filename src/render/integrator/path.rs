@@ -8,7 +8,8 @@
 //! ```
 //!
 //! n is the index where the path is over that where it began: within glass T holds the factor 1/n² of radiance, which is given back where
-//! the path leaves the glass and says nothing about what the path is worth.
+//! the path leaves the glass and says nothing about what the path is worth. Where paths are guided T counts by so much more as its place is
+//! bright and its direction is likely by what is known of them.
 //!
 //! Of two ways at a polished surface both are followed unless one is faint ([`super::waiting`]); from diffuse surfaces paths may be guided
 //! ([`super::guide`]).
@@ -119,7 +120,8 @@ struct Edge {
     chance: f64,
     /// The same since the last surface that is not polished; 1 where the path is straight.
     lately: f64,
-    /// How much likelier its direction is by guiding than by the material, at least 1: so much more the path is worth than it carries.
+    /// How much more the path is worth than it carries: how much likelier its direction is by guiding than by the material, and how bright the
+    /// place is that it leaves, each at least 1.
     guided: f64,
 }
 

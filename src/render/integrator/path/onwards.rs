@@ -60,12 +60,11 @@ impl<'a> PathTracer<'a> {
         }
         // By all ways of drawing the direction; the material's own may not know it.
         let pdf = guided.map_or(drawn.pdf, |g| g.density(frame.world(drawn.direction), drawn.pdf));
-        if guided.is_some() {
+        here.guided = 1.0;
+        if let Some(guided) = guided {
             self.guided += 2;
             self.weigh(drawn.pdf / pdf);
-            here.guided = (pdf / drawn.pdf).max(1.0);
-        } else {
-            here.guided = 1.0;
+            here.guided = (pdf / drawn.pdf).max(1.0) * guided.brightness();
         }
         here.rival = vertex.rival * vertex.sent(drawn.direction, hero) / pdf;
         let next = self.onwards(&here, vertex, &drawn, u3)?;
