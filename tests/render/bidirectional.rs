@@ -68,6 +68,7 @@ spectrum = [[360, 1], [830, 1]]
 distant = {{ from = [0, 0, 1], irradiance = "1000 lx" }}
 [[sensor]]
 name = "view"
+spectrum = true
 camera = {{ at = [0, 0, 0.6], look_at = [0, 0, 0], up = [0, 1, 0], resolution = [8, 8], {projection} }}
 "#
         );

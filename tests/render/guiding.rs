@@ -89,7 +89,7 @@ fn pictures_are_those_of_the_path_tracer() {
 /// cone reads, whose paths go on one way much sooner: in every band, with polarisation, dispersion, and lamps seen by reflections inside.
 #[test]
 fn both_ways_are_the_mean_of_either() {
-    let built = built(&format!("[render]\nwavelength_step_nm = 60\n{ROOM}{BALL}{PANE}{LAMP}{VIEW}"));
+    let built = built(&format!("[render]\nwavelength_step_nm = 60\n{ROOM}{BALL}{PANE}{LAMP}{VIEW}spectrum = true\n"));
     let bands = built.scene.bands().len();
     let limits = built.settings.limits;
     assert!(limits.polarisation);

@@ -56,6 +56,7 @@ spectrum = [[360, 1], [830, 1]]
 distant = {{ from = [0, 0, 1], irradiance = "1000 lx" }}
 [[sensor]]
 name = "floor"
+spectrum = true
 illuminance = {{ on = "floor" }}
 [[sensor]]
 name = "air"
