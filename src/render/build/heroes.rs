@@ -26,7 +26,7 @@ const ALIKE: f64 = 0.1;
 const ALIKE_READ: f64 = 0.5;
 
 /// The probabilities p of the bands. Where something `fluoresces`, bands are seen that no light has.
-pub(super) fn weights(
+pub(super) fn probabilities(
     quantities: &Quantities,
     lights: &[Arc<dyn Light>],
     fluoresces: bool,
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn luminance_and_colours_have_little_noise() {
         let quantities = quantities();
-        let p = weights(&quantities, &[], false, &[]);
+        let p = probabilities(&quantities, &[], false, &[]);
         assert!((p.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         let moment = |of: fn(&[f64; 3]) -> f64| {
             let w = || quantities.tristimulus.iter().map(of);
@@ -89,7 +89,7 @@ mod tests {
         }
         assert!(p.iter().all(|p| *p >= ALIKE / 47.0));
         // Light of equal energy changes nothing.
-        let equal = weights(&quantities, &[light(|_| 2.0)], false, &[]);
+        let equal = probabilities(&quantities, &[light(|_| 2.0)], false, &[]);
         assert!(p.iter().zip(equal).all(|(a, b)| (a - b).abs() < 1e-12));
     }
 
@@ -99,7 +99,7 @@ mod tests {
         let quantities = quantities();
         let lamp = |band: usize| if (10..20).contains(&band) { 1e-6 } else { 0.0 };
         let laser = |band: usize| if band == 30 { 1e3 } else { 0.0 };
-        let of = |lights: &[Arc<dyn Light>]| weights(&quantities, lights, false, &[]);
+        let of = |lights: &[Arc<dyn Light>]| probabilities(&quantities, lights, false, &[]);
         let (alone, both) = (of(&[light(lamp)]), of(&[light(lamp), light(laser)]));
         let above = |p: f64| p - ALIKE / 47.0;
         for band in 10..20 {
@@ -108,6 +108,6 @@ mod tests {
         assert!((above(both[30]) - 0.5 * (1.0 - ALIKE)).abs() < 1e-12);
         // Without any light, and with one that has no band, all bands that are seen count.
         assert_eq!(of(&[]), of(&[light(|_| 0.0)]));
-        assert_eq!(of(&[]), weights(&quantities, &[light(laser)], true, &[]));
+        assert_eq!(of(&[]), probabilities(&quantities, &[light(laser)], true, &[]));
     }
 }

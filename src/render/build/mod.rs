@@ -265,7 +265,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     })?;
     let packets = render.solver == Solver::Bidirectional;
     let fluoresces = !analysis.fluorescent.is_empty();
-    let heroes = heroes::weights(&quantities, scene.lights(), fluoresces, &instruments);
+    let heroes = heroes::probabilities(&quantities, scene.lights(), fluoresces, &instruments);
     let settings = Settings::new(render.seed, limits, scene.bands().len()).keeping(&heroes);
     let full = render.model == Model::Full;
     let virtual_lights = if full { Some(false) } else { render.virtual_lights };
