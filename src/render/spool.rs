@@ -2,7 +2,7 @@
 //! machines did.
 //!
 //! ```text
-//! photopic render 7\n
+//! photopic render 8\n
 //! length of the header, u64; header, JSON
 //! per meter point and replicate:  samples, faults, sums per band; checksum
 //! per picture and row:            noise, samples of all channels (f32, channel by channel); checksum
@@ -22,7 +22,7 @@ use super::estimate::{Faults, REPLICATES, Replicate};
 use super::noise::Noise;
 
 /// The first bytes of a file.
-const MAGIC: &[u8] = b"photopic render 7\n";
+const MAGIC: &[u8] = b"photopic render 8\n";
 /// The longest header that is read, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 const CHECKSUM: usize = 8;
