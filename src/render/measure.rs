@@ -256,3 +256,15 @@ impl<'a> Beside<'a> {
         &self.sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_are_kept_by_their_weights() {
+        let settings = Settings::new(1, Limits::default(), 4);
+        assert_eq!(settings.heroes, [0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(settings.keeping(&[1.0, 4.0, 2.0, 1.0]).heroes, [0.125, 0.625, 0.875, 1.0]);
+    }
+}

@@ -104,8 +104,9 @@ fn a_room_is_nearer_to_the_truth_than_it_was_sampled() {
         (0..8).map(|seed| errors(seed, 64)).fold([0.0; 3], |sums, e| std::array::from_fn(|i| sums[i] + e[i] / 8.0));
     println!("64 samples: filtered {squared:.2e}, stated {stated:.2e}, as sampled {plain:.2e}");
     assert!(squared < 0.5 * plain && squared < 1.5 * stated, "{squared} {stated} {plain}");
-    // Of half as many the picture in the middle of many, as their ratios lie far apart (a quarter of them beyond 1.5): one in sixteen has a pixel beneath the glass that is far too dark, as nothing found what lights it,
-    // and the mean of squares relative to what was found is that pixel's.
+    // Of half as many the picture in the middle of many, as their ratios lie far apart (a quarter of them beyond 1.5): one in sixteen has a
+    // pixel beneath the glass that is far too dark, as nothing found what lights it, and the mean of squares relative to what was found is
+    // that pixel's.
     let (mut of_stated, mut of_plain): (Vec<f64>, Vec<f64>) = (0..45)
         .map(|seed| errors(seed, 32))
         .map(|[squared, stated, plain]| (squared / stated, squared / plain))
