@@ -5,7 +5,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::fit::Fits;
 use super::record::{FEATURES, narrow};
 use super::rows::Rows;
-use super::tile::{NEIGHBOURS, TILE, Tile, Window, neighbour};
+use super::tile::{MARGIN, Margin, NEIGHBOURS, TILE, Tile, Window, differs, neighbour};
 use super::weights::{Guide, overlap, scratch};
 use crate::render::lanes::multiply;
 
@@ -19,12 +19,11 @@ pub(super) struct Filter {
     scratch: Vec<f32>,
     /// What the camera saw at the pixels of a tile, by all samples.
     seen: [Tile; FEATURES],
-    /// And about it, by those of a half.
-    features: [Window; FEATURES],
+    /// What lies about a tile at the picture's sides.
+    margins: [Margin; FEATURES],
     fits: Fits,
     /// What each neighbour counts.
     kernels: Vec<Tile>,
-    samples: [Window; TOGETHER],
 }
 
 impl Filter {
@@ -33,10 +32,9 @@ impl Filter {
             weights: vec![vec![0.0; width.next_multiple_of(TILE)]; NEIGHBOURS],
             scratch: vec![0.0; scratch(width)],
             seen: [[0.0; TILE]; FEATURES],
-            features: std::array::from_fn(|_| Window::default()),
+            margins: [MARGIN; FEATURES],
             fits: Fits::default(),
             kernels: vec![[0.0; TILE]; NEIGHBOURS],
-            samples: std::array::from_fn(|_| Window::default()),
         }
     }
 
@@ -116,20 +114,28 @@ impl Filtering<'_> {
     fn fit(&mut self, first: usize) {
         let (filter, records) = (&mut *self.filter, self.records);
         let own = (records.width - first).min(TILE);
-        for (feature, seen) in filter.seen.iter_mut().enumerate() {
+        let mut windows = [Window::EMPTY; FEATURES];
+        let mut vary = 0;
+        for (feature, margin) in filter.margins.iter_mut().enumerate() {
+            let seen = &mut filter.seen[vary];
             for (i, seen) in seen[..own].iter_mut().enumerate() {
                 *seen = narrow(records.seen(first + i, self.y, feature));
             }
-            filter.features[feature].load(records, records.layout.feature(self.half) + feature, first, self.y);
+            // What is the same everywhere, as most is on a floor, is no part of the fit.
+            let (channel, all) = (records.layout.feature(self.half) + feature, seen[0]);
+            if seen[..own].iter().any(|s| *s != all) || differs(records, channel, first, self.y, all) {
+                windows[vary] = Window::of(records, channel, first, self.y, margin);
+                vary += 1;
+            }
         }
-        filter.fits.clear();
+        let (windows, seen) = (&windows[..vary], &filter.seen[..vary]);
+        filter.fits.start(vary);
         for number in 0..NEIGHBOURS {
-            let differences = differences(&filter.features, &filter.seen, number);
-            filter.fits.add(tile(&filter.weights[number], first), &differences);
+            filter.fits.add(tile(&filter.weights[number], first), &differences(windows, seen, number));
         }
         filter.fits.solve();
         for (number, kernel) in filter.kernels.iter_mut().enumerate() {
-            let differences = differences(&filter.features, &filter.seen, number);
+            let differences = differences(windows, seen, number);
             *kernel = filter.fits.kernel(tile(&filter.weights[number], first), &differences);
         }
     }
@@ -142,12 +148,13 @@ impl Filtering<'_> {
         let channel = records.layout.band(self.half);
         for (number, bands) in self.bands.chunks_mut(TOGETHER * records.width).enumerate() {
             let count = bands.len() / records.width;
-            for (band, samples) in filter.samples[..count].iter_mut().enumerate() {
-                samples.load(records, channel + number * TOGETHER + band, first, self.y);
+            let mut windows = [Window::EMPTY; TOGETHER];
+            for (band, (window, margin)) in windows[..count].iter_mut().zip(&mut filter.margins).enumerate() {
+                *window = Window::of(records, channel + number * TOGETHER + band, first, self.y, margin);
             }
             let mut sums = [[0.0; TILE]; TOGETHER];
             for (number, kernel) in filter.kernels.iter().enumerate() {
-                let samples = filter.samples.each_ref().map(|samples| samples.of(number));
+                let samples = windows.each_ref().map(|window| window.neighbour(number));
                 for i in 0..TILE {
                     for band in 0..TOGETHER {
                         sums[band][i] += kernel[i] * samples[band][i];
@@ -161,12 +168,12 @@ impl Filtering<'_> {
     }
 }
 
-/// By how much the features of a neighbour differ from those of the pixels.
+/// By how much the features of a neighbour, as many as there are, differ from those of the pixels.
 #[inline(always)]
-fn differences(features: &[Window; FEATURES], seen: &[Tile; FEATURES], number: usize) -> [Tile; FEATURES] {
+fn differences(features: &[Window<'_>], seen: &[Tile], number: usize) -> [Tile; FEATURES] {
     let mut differences = [[0.0; TILE]; FEATURES];
-    for feature in 0..FEATURES {
-        let there = features[feature].of(number);
+    for (feature, window) in features.iter().enumerate() {
+        let there = window.neighbour(number);
         for i in 0..TILE {
             differences[feature][i] = there[i] - seen[feature][i];
         }

@@ -13,7 +13,7 @@
 use super::record::{FEATURES, narrow};
 use super::tile::{TILE, Tile};
 
-/// Unknowns: the value and its slopes.
+/// Unknowns at most: the value and its slopes.
 const UNKNOWNS: usize = FEATURES + 1;
 /// λ.
 const RIDGE: f64 = 1e-3;
@@ -25,8 +25,9 @@ const LANES: usize = 8;
 /// A number of each of them.
 type Lanes = [f64; LANES];
 
-/// The fits of a tile.
+/// The fits of a tile, by as many features as vary there.
 pub(super) struct Fits {
+    features: usize,
     /// The lower half of M, row by row: Σ w x_j x_k.
     sums: [Tile; SUMS],
     /// s.
@@ -35,14 +36,15 @@ pub(super) struct Fits {
 
 impl Default for Fits {
     fn default() -> Self {
-        Self { sums: [[0.0; TILE]; SUMS], solutions: [[0.0; TILE]; UNKNOWNS] }
+        Self { features: FEATURES, sums: [[0.0; TILE]; SUMS], solutions: [[0.0; TILE]; UNKNOWNS] }
     }
 }
 
 impl Fits {
-    /// Forgets all neighbours.
-    pub(super) fn clear(&mut self) {
-        self.sums = [[0.0; TILE]; SUMS];
+    /// Forgets all neighbours; those to come have so many features.
+    pub(super) fn start(&mut self, features: usize) {
+        self.features = features;
+        self.sums[..index(features + 1, 0)].fill([0.0; TILE]);
     }
 
     /// Adds a neighbour of each pixel: its weight and, feature by feature, by how much it differs.
@@ -52,7 +54,7 @@ impl Fits {
         for i in 0..TILE {
             first[i] += weights[i];
         }
-        for j in 0..FEATURES {
+        for j in 0..self.features {
             let sums = &mut self.sums[index(j + 1, 0)..];
             let mut weighted = [0.0; TILE];
             for i in 0..TILE {
@@ -72,13 +74,13 @@ impl Fits {
     pub(super) fn solve(&mut self) {
         for first in (0..TILE).step_by(LANES) {
             let mut sums = [[0.0; LANES]; SUMS];
-            for (sum, all) in sums.iter_mut().zip(&self.sums) {
+            for (sum, all) in sums.iter_mut().zip(&self.sums[..index(self.features + 1, 0)]) {
                 for i in 0..LANES {
                     sum[i] = f64::from(all[first + i]);
                 }
             }
-            let solutions = solve(sums);
-            for (all, solution) in self.solutions.iter_mut().zip(&solutions) {
+            let solutions = solve(sums, self.features + 1);
+            for (all, solution) in self.solutions.iter_mut().zip(&solutions[..=self.features]) {
                 for i in 0..LANES {
                     all[first + i] = narrow(solution[i]);
                 }
@@ -89,8 +91,9 @@ impl Fits {
     /// κ of a neighbour, given as to [`Fits::add`].
     #[inline(always)]
     pub(super) fn kernel(&self, weights: &Tile, differences: &[Tile; FEATURES]) -> Tile {
-        let [mut kernel, slopes @ ..] = self.solutions;
-        for k in 0..FEATURES {
+        let [first, slopes @ ..] = &self.solutions;
+        let mut kernel = *first;
+        for k in 0..self.features {
             for i in 0..TILE {
                 kernel[i] += slopes[k][i] * differences[k][i];
             }
@@ -108,19 +111,19 @@ fn index(j: usize, k: usize) -> usize {
     j * (j + 1) / 2 + k
 }
 
-/// s of some pixels, given their sums; 0 without neighbours. By Cholesky's factors of M, scaled so that its diagonal is 1, as features have
+/// s of some pixels, given the sums of so many unknowns; 0 without neighbours. By Cholesky's factors of M, scaled so that its diagonal is 1, as features have
 /// different units. What does not vary says nothing.
 #[inline(always)]
-fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
+fn solve(mut sums: [Lanes; SUMS], unknowns: usize) -> [Lanes; UNKNOWNS] {
     let total = sums[0];
     let mut scale = [[0.0; LANES]; UNKNOWNS];
-    for k in 0..UNKNOWNS {
+    for k in 0..unknowns {
         let square = sums[index(k, k)];
         for i in 0..LANES {
             scale[k][i] = if square[i] > 0.0 { square[i].sqrt().recip() } else { 0.0 };
         }
     }
-    for j in 0..UNKNOWNS {
+    for j in 0..unknowns {
         for k in 0..j {
             for i in 0..LANES {
                 sums[index(j, k)][i] *= scale[j][i] * scale[k][i];
@@ -130,7 +133,7 @@ fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
     }
     // M = L Lᵀ, L in the place of M but for its diagonal, of which the inverse is kept.
     let (mut inverse, mut sound) = ([[0.0; LANES]; UNKNOWNS], [true; LANES]);
-    for j in 0..UNKNOWNS {
+    for j in 0..unknowns {
         for k in 0..=j {
             let mut left = sums[index(j, k)];
             for l in 0..k {
@@ -153,7 +156,7 @@ fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
     // L y = e₀, Lᵀ s = y.
     let mut solution = [[0.0; LANES]; UNKNOWNS];
     solution[0] = scale[0];
-    for j in 0..UNKNOWNS {
+    for j in 0..unknowns {
         for k in 0..j {
             for i in 0..LANES {
                 solution[j][i] -= sums[index(j, k)][i] * solution[k][i];
@@ -163,8 +166,8 @@ fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
             solution[j][i] *= inverse[j][i];
         }
     }
-    for j in (0..UNKNOWNS).rev() {
-        for k in j + 1..UNKNOWNS {
+    for j in (0..unknowns).rev() {
+        for k in j + 1..unknowns {
             for i in 0..LANES {
                 solution[j][i] -= sums[index(k, j)][i] * solution[k][i];
             }
@@ -173,7 +176,7 @@ fn solve(mut sums: [Lanes; SUMS]) -> [Lanes; UNKNOWNS] {
             solution[j][i] *= inverse[j][i];
         }
     }
-    for j in 0..UNKNOWNS {
+    for j in 0..unknowns {
         for i in 0..LANES {
             // Rounded away: the plain mean.
             let mean = if j == 0 { 1.0 / total[i] } else { 0.0 };
@@ -194,6 +197,7 @@ mod tests {
     #[test]
     fn what_is_solved_is_the_solution() {
         let (mut fits, mut stream) = (Fits::default(), Stream::new(12, 1));
+        fits.start(FEATURES);
         let mut uniform = || stream.uniforms::<1>()[0] as f32;
         for _ in 0..40 {
             let mut weights: Tile = std::array::from_fn(|_| uniform());

@@ -1,5 +1,7 @@
 //! Some pixels of a row that are filtered together, and those about them.
 
+use std::ops::Range;
+
 use super::rows::Rows;
 
 /// Pixels to each side that a pixel borrows from.
@@ -19,41 +21,66 @@ pub(super) fn neighbour(number: usize) -> [isize; 2] {
     [number % SIDE, number / SIDE].map(|along| along.cast_signed() - REACH.cast_signed())
 }
 
+/// A number for each pixel of a row of a tile, and for [`REACH`] columns to each side.
+type Wide = [f32; TILE + 2 * REACH];
+
+/// Room for the rows about a tile that do not lie in the picture as a whole.
+pub(super) type Margin = [Wide; SIDE];
+pub(super) const MARGIN: Margin = [OUTSIDE; SIDE];
+const OUTSIDE: Wide = [0.0; TILE + 2 * REACH];
+
 /// One number for each pixel of a tile and of what lies about it: [`REACH`] rows and columns to each side, 0 outside of the picture.
-pub(super) struct Window {
-    rows: [[f32; TILE + 2 * REACH]; SIDE],
+#[derive(Clone, Copy)]
+pub(super) struct Window<'a> {
+    rows: [&'a Wide; SIDE],
 }
 
-impl Default for Window {
-    fn default() -> Self {
-        Self { rows: [[0.0; TILE + 2 * REACH]; SIDE] }
-    }
-}
+impl<'a> Window<'a> {
+    /// 0 everywhere.
+    pub(super) const EMPTY: Self = Self { rows: [&OUTSIDE; SIDE] };
 
-impl Window {
-    /// Reads what lies about the tile of row y that begins at column `first`.
+    /// What lies about the tile of row y that begins at column `first`.
     #[inline(always)]
-    pub(super) fn load(&mut self, records: &Rows<'_>, channel: usize, first: usize, y: usize) {
-        // Columns are counted from where those about the first tile begin, which lies to the left of the picture.
-        let (left, right) = (first.max(REACH), (first + TILE + 2 * REACH).min(records.width + REACH));
-        for (row, out) in (y..).zip(&mut self.rows) {
-            let Some(row) = row.checked_sub(REACH).filter(|row| *row < records.rows.len()) else {
-                *out = [0.0; TILE + 2 * REACH];
-                continue;
-            };
-            let own = &records.channel(row, channel)[left - REACH..right - REACH];
-            if let Some(whole) = own.first_chunk() {
-                *out = *whole;
-            } else {
-                *out = [0.0; TILE + 2 * REACH];
-                out[left - first..][..own.len()].copy_from_slice(own);
-            }
+    pub(super) fn of(records: &'a Rows<'_>, channel: usize, first: usize, y: usize, margin: &'a mut Margin) -> Self {
+        let columns = columns(records, first);
+        let mut rows = [&OUTSIDE; SIDE];
+        for ((row, out), margin) in (y..).zip(&mut rows).zip(margin) {
+            let Some(row) = row.checked_sub(REACH).filter(|row| *row < records.rows.len()) else { continue };
+            let own = &records.channel(row, channel)[columns.clone()];
+            *out = own.first_chunk().unwrap_or_else(|| {
+                *margin = OUTSIDE;
+                margin[columns.start + REACH - first..][..own.len()].copy_from_slice(own);
+                margin
+            });
         }
+        Self { rows }
     }
 
     /// The numbers of a neighbour of each pixel.
     #[inline(always)]
-    pub(super) fn of(&self, number: usize) -> &Tile {
+    pub(super) fn neighbour(&self, number: usize) -> &'a Tile {
         self.rows[number / SIDE][number % SIDE..].first_chunk().expect("a window reaches beyond the tile")
     }
+}
+
+/// Whether a number of a channel is another than `all` anywhere about the tile.
+#[inline(always)]
+pub(super) fn differs(records: &Rows<'_>, channel: usize, first: usize, y: usize, all: f32) -> bool {
+    let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(records.rows.len());
+    for row in rows {
+        let mut differ = false;
+        for number in &records.channel(row, channel)[columns(records, first)] {
+            differ |= *number != all;
+        }
+        if differ {
+            return true;
+        }
+    }
+    false
+}
+
+/// The columns about a tile that lie in the picture.
+#[inline(always)]
+fn columns(records: &Rows<'_>, first: usize) -> Range<usize> {
+    first.saturating_sub(REACH)..(first + TILE + REACH).min(records.width)
 }
