@@ -435,6 +435,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
         let number = |x, y| self.number(x, y);
         let own = |place: usize| number(region.x + place % region.width, region.y + place / region.width);
         let mut together = Together::default();
+        let has_in_common = tracer.virtual_lights().is_some();
         self.take(tracer, (region, 0), number, |place, (stream, index), sample, _| {
             let pixel = &mut pixels[place];
             let mut luminance = 0.0;
@@ -445,7 +446,9 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 sums[place * bands..].iter_mut().zip(sample).for_each(|(sum, s)| *sum += s);
                 luminance = weighted(sample, &self.luminous);
             }
-            together.add(index, pixel, luminance, (own(place), 1.0));
+            if has_in_common {
+                together.add(index, pixel, luminance, (own(place), 1.0));
+            }
             pixel.add(luminance);
         });
         let mut values = vec![0.0; self.description.channels.len()];
@@ -465,7 +468,7 @@ impl<'a, F: Fn(u64) + Send + Sync> Film<'a, F> {
                 out[place * region.width + column] = sample;
             }
         }
-        if tracer.virtual_lights().is_some() {
+        if has_in_common {
             in_common(&mut noises, together.variance());
         }
         (self.progress)((region.width * region.height) as u64 * self.samples);

@@ -26,6 +26,17 @@ pub fn weighted(values: &[f64], weights: &[f64]) -> f64 {
     lanes.iter().sum::<f64>() + rest
 }
 
+/// Their mean, summed lane by lane as in [`weighted`].
+#[must_use]
+pub fn mean(values: &[f64]) -> f64 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [0.0; LANES];
+    for chunk in chunks {
+        lanes.iter_mut().zip(chunk).for_each(|(lane, v)| *lane += v);
+    }
+    lanes.iter().chain(rest).sum::<f64>() / values.len() as f64
+}
+
 /// Adds a row to another, which is no longer. As the next one a loop over places: chains of iterators are not always inlined, and only what is inlined is
 /// compiled for the instruction set that a dispatch finds.
 #[inline(always)]
@@ -69,6 +80,7 @@ mod tests {
             assert_eq!(largest(&turned), last);
             // Whole numbers: no sum is rounded.
             assert_eq!(weighted(&values, &vec![2.0; values.len()]), 2.0 * sum);
+            assert!(n == 0 || mean(&values) == sum / f64::from(n));
         }
         assert_eq!(largest(&[-1.0, f64::NAN]), 0.0);
         assert_eq!(largest(&[3.0, f64::NAN, 1.0, 0.0, 0.0, 0.0, 0.0, 2.0, 9.0]), 9.0);

@@ -16,17 +16,23 @@ use crate::geometry::direction::tangents;
 struct Placement {
     to_world: DAffine3,
     to_local: DAffine3,
+    /// Nothing moves, as with most meshes: the same numbers are had without the arithmetic.
+    is_identity: bool,
 }
 
 impl Placement {
     /// `None` for a transform that cannot be undone in `f64`.
     fn new(to_world: DAffine3) -> Option<Self> {
         let to_local = to_world.inverse();
-        (to_world.is_finite() && to_local.is_finite()).then_some(Self { to_world, to_local })
+        let is_identity = to_world == DAffine3::IDENTITY;
+        (to_world.is_finite() && to_local.is_finite()).then_some(Self { to_world, to_local, is_identity })
     }
 
     /// A ray of the world in the mesh's coordinates; distances along it stay what they are.
     fn ray(&self, ray: &Ray) -> Ray {
+        if self.is_identity {
+            return *ray;
+        }
         Ray {
             origin: self.to_local.transform_point3(ray.origin),
             direction: self.to_local.transform_vector3(ray.direction),
@@ -51,22 +57,27 @@ impl Placement {
     fn surface(&self, mesh: &Mesh, face: u32, uv: DVec2) -> SurfacePoint {
         let [a, b, c] = mesh.corners(face);
         let (local, local_error) = triangle::point(a, b, c, uv);
-        let position = self.to_world.transform_point3(local);
-        // Normals turn with the inverse transposed, so that they stay across and on the same side of a mirrored mesh.
-        let turn = self.to_local.matrix3.transpose();
-        let normal = (turn * cross(b - a, c - a)).normalize();
-        let shading = mesh
-            .shading(face, uv)
-            .and_then(|n| (turn * n).try_normalize())
-            .map_or(normal, |n| if n.dot(normal) < 0.0 { -n } else { n });
-        let along = self.to_world.transform_vector3(mesh.across(face));
+        let across = cross(b - a, c - a);
+        let (smooth, along) = (mesh.shading(face, uv), mesh.across(face));
+        let (position, error, normal, smooth, along) = if self.is_identity {
+            let rounding = gamma(5.0) * local.abs();
+            (local, local_error + rounding + rounding, across.normalize(), smooth, along)
+        } else {
+            let position = self.to_world.transform_point3(local);
+            // Normals turn with the inverse transposed, so that they stay across and on the same side of a mirrored mesh.
+            let turn = self.to_local.matrix3.transpose();
+            // The point's own rounding, that of its way to the world, and that of the way back which the next ray takes.
+            let out = absolute(self.to_world.matrix3);
+            let back = absolute(self.to_local.matrix3);
+            let error = out * local_error
+                + gamma(5.0) * (out * local.abs() + self.to_world.translation.abs())
+                + out * (gamma(5.0) * (back * position.abs() + self.to_local.translation.abs()));
+            let along = self.to_world.transform_vector3(along);
+            (position, error, (turn * across).normalize(), smooth.map(|n| turn * n), along)
+        };
+        let shading =
+            (smooth.and_then(DVec3::try_normalize)).map_or(normal, |n| if n.dot(normal) < 0.0 { -n } else { n });
         let tangent = along.reject_from_normalized(shading).try_normalize().unwrap_or_else(|| tangents(shading).0);
-        // The point's own rounding, that of its way to the world, and that of the way back which the next ray takes.
-        let out = absolute(self.to_world.matrix3);
-        let back = absolute(self.to_local.matrix3);
-        let error = out * local_error
-            + gamma(5.0) * (out * local.abs() + self.to_world.translation.abs())
-            + out * (gamma(5.0) * (back * position.abs() + self.to_local.translation.abs()));
         SurfacePoint { position, error: normal.abs().dot(error), normal, shading, tangent, uv: mesh.uv(face, uv) }
     }
 }
@@ -152,5 +163,34 @@ impl Shape for PlacedMesh {
         let face = self.areas().partition_point(|&sum| sum <= chosen).min(last);
         let (fold, v) = (u[1].sqrt(), u[2]);
         self.placement.surface(&self.mesh, face as u32, DVec2::new(fold * (1.0 - v), fold * v))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+    use crate::render::mesh::MeshData;
+
+    /// To the bit.
+    #[test]
+    fn what_is_not_moved_is_what_moving_by_nothing_gives() {
+        let mut stream = Stream::new(31, 1);
+        let mut point = || DVec3::from_array(stream.uniforms()) - 0.5;
+        let positions = vec![point(), point(), point()];
+        let normals = [point(), point(), point()].map(|n| n.as_vec3()).to_vec();
+        let data = MeshData { positions, triangles: vec![[0, 1, 2]], normals, uvs: Vec::new() };
+        let own = Placement::new(DAffine3::IDENTITY).expect("can be undone");
+        assert!(own.is_identity);
+        let general = Placement { is_identity: false, ..own };
+        for data in [MeshData { normals: Vec::new(), ..data.clone() }, data] {
+            let mesh = Mesh::new(data).expect("sound");
+            for u in 0..100 {
+                let uv = DVec2::new(0.009 * f64::from(u), 0.003);
+                assert_eq!(own.surface(&mesh, 0, uv), general.surface(&mesh, 0, uv));
+                let ray = Ray { origin: point(), direction: point() };
+                assert_eq!(own.ray(&ray), general.ray(&ray));
+            }
+        }
     }
 }

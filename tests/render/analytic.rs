@@ -1,4 +1,5 @@
-//! The cases of `../shared/render/analytic.json`: each within three standard errors at a relative standard error of 0.1 %.
+//! The cases of `../shared/render/analytic.json`: each within three standard errors at a relative standard error of 0.1 %. With `--nocapture` the
+//! tests print what was expected, what they got and its standard error.
 
 use std::sync::Arc;
 
@@ -82,6 +83,7 @@ fn read_to(scene: &Scene, place: Place, seed: u64, relative: f64) -> Figure {
 
 /// Three standard errors; a figure without scatter is right to rounding.
 pub(crate) fn agrees(figure: Figure, expected: f64, name: &str) {
+    println!("| {name} | {expected:.8} | {:.8} | {:.1e} |", figure.value, figure.standard_error);
     let allowed = (3.0 * figure.standard_error).max(1e-12 * expected.abs());
     assert!((figure.value - expected).abs() <= allowed, "{name}: {figure:?}, expected {expected}");
 }
@@ -93,7 +95,8 @@ fn a_point_source() {
     let scene = scene(Vec::new(), vec![Arc::new(lamp)]);
     for r in [0.0, 1.0, 3.0] {
         let figure = read(&scene, at(DVec3::new(r, 0.0, 0.0), DVec3::Z), 1);
-        agrees(figure, value(&cases, &format!("point_I1000_h2_r{r}")), "point");
+        let name = format!("point_I1000_h2_r{r}");
+        agrees(figure, value(&cases, &name), &name);
     }
 }
 
@@ -104,14 +107,15 @@ fn a_disk_a_rectangle_and_a_sphere() {
     let disk = scene(vec![part(disk, 0.0, Some(1000.0))], Vec::new());
     for d in [0.0, 0.5, 1.0, 3.0] {
         let figure = read(&disk, at(DVec3::new(d, 0.0, 0.0), DVec3::Z), 2);
-        agrees(figure, value(&cases, &format!("disk_L1000_R0.5_h1_d{d}")), "disk");
+        let name = format!("disk_L1000_R0.5_h1_d{d}");
+        agrees(figure, value(&cases, &name), &name);
     }
     let square = Rectangle::new(DVec3::new(0.0, 0.0, 1.0), DVec3::Y, DVec3::X).expect("a square");
     let square = scene(vec![part(square, 0.0, Some(1.0))], Vec::new());
     let corner = read(&square, at(DVec3::ZERO, DVec3::Z), 3);
-    agrees(corner, value(&cases, "rect_corner_1x1_h1_E_over_L"), "corner");
+    agrees(corner, value(&cases, "rect_corner_1x1_h1_E_over_L"), "rectangle, corner");
     let centre = read(&square, at(DVec3::new(0.5, 0.5, 0.0), DVec3::Z), 3);
-    agrees(centre, value(&cases, "rect_centre_1x1_h1_E_over_L"), "centre");
+    agrees(centre, value(&cases, "rect_centre_1x1_h1_E_over_L"), "rectangle, centre");
     let ball = Sphere::new(DVec3::new(0.0, 0.0, 2.0), 0.5).expect("a ball");
     let ball = scene(vec![part(ball, 0.0, Some(1000.0))], Vec::new());
     agrees(read(&ball, at(DVec3::ZERO, DVec3::Z), 4), value(&cases, "sphere_R0.5_D2_L1000"), "ball");
@@ -128,7 +132,7 @@ fn an_integrating_sphere() {
         let place = Place::Point(SurfacePoint::meter(DVec3::new(0.5, 0.0, 0.0), DVec3::NEG_X, 1e-12));
         let figure = read(&scene, place, 5);
         let expected = cases[format!("int_sphere_r0.5_1000lm_rho{name}")]["value"][1].as_f64().expect("a number");
-        agrees(figure, expected, "integrating sphere");
+        agrees(figure, expected, &format!("integrating sphere, reflectance {name}"));
     }
 }
 
@@ -140,7 +144,7 @@ fn an_integrating_sphere_of_999_thousandths() {
     let scene = scene(vec![part(wall, 0.999, None)], vec![Arc::new(lamp)]);
     let place = Place::Point(SurfacePoint::meter(DVec3::new(0.5, 0.0, 0.0), DVec3::NEG_X, 1e-12));
     // Φ/(A (1 − ρ)), A = π m².
-    agrees(read_to(&scene, place, 5, 3e-3), 1e6 / std::f64::consts::PI, "integrating sphere");
+    agrees(read_to(&scene, place, 5, 3e-3), 1e6 / std::f64::consts::PI, "integrating sphere, reflectance 0.999");
 }
 
 /// Form factors as illuminances, E/(π L): from a floor to a wall of a cube, between squares opposite each other and coaxial disks, and
@@ -199,7 +203,7 @@ fn a_closed_cube() {
         let lamp = Point::new(DVec3::ZERO, &[10_000.0 / (4.0 * std::f64::consts::PI)]).expect("a lamp");
         let scene = scene((0..6).map(|n| part(face(n), rho, None)).collect(), vec![Arc::new(lamp)]);
         let figure = read(&scene, Place::Area(Arc::new(face(4))), 6);
-        agrees(figure, expected.as_f64().expect("a number"), "cube");
+        agrees(figure, expected.as_f64().expect("a number"), &format!("cube, reflectance {rho}"));
     }
 }
 
@@ -215,7 +219,7 @@ fn a_glowing_enclosure() {
         let scene = scene(vec![part], Vec::new());
         let figure = read(&scene, at(DVec3::new(0.3, -0.5, 0.7), DVec3::Z), 8);
         let expected = expected.as_f64().expect("a number") * std::f64::consts::PI;
-        agrees(figure, expected, "enclosure");
+        agrees(figure, expected, &format!("enclosure, reflectance {rho}"));
     }
 }
 

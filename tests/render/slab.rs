@@ -73,6 +73,10 @@ fn a_solid_pane_transmits_as_its_closed_form_says() {
             let expected = cases[name]["value"][index].as_f64().unwrap();
             let figure = seen(&pane, theta_deg, polarisation, 1 << 15);
             let off = (figure.value - expected).abs();
+            println!(
+                "| {name}, polarisation {polarisation} | {expected:.8} | {:.8} | {:.1e} |",
+                figure.value, figure.standard_error
+            );
             assert!(figure.standard_error < 1e-3 * expected, "{name}: {figure:?}");
             assert!(off <= 3.0 * figure.standard_error, "{name} {polarisation}: {figure:?}, expected {expected}");
         }

@@ -53,6 +53,7 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
         let mut pixels = vec![Gathered::default(); width * strip.height];
         let mut together = 0.0;
         let all = |x: usize, y: usize| self.number(x, y).max(FEWEST);
+        let has_in_common = tracer.virtual_lights().is_some();
         for (half, streams) in [0, OTHER_HALF].into_iter().enumerate() {
             let number = |x: usize, y: usize| if half == 0 { all(x, y) / 2 } else { all(x, y).div_ceil(2) };
             let mut halves = vec![Half::new(layout.bands); pixels.len()];
@@ -63,9 +64,11 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
                     Some((sample, _)) => weighted(sample, &self.luminous),
                     None => 0.0,
                 };
-                let (x, y) = (place % width, strip.y + place / width);
-                let share = number(x, y) as f64 / all(x, y) as f64;
-                noise.add(index, halves[place].luminance(), luminance, (number(x, y), share));
+                if has_in_common {
+                    let (x, y) = (place % width, strip.y + place / width);
+                    let share = number(x, y) as f64 / all(x, y) as f64;
+                    noise.add(index, halves[place].luminance(), luminance, (number(x, y), share));
+                }
                 halves[place].add(sample, self.camera.position(), luminance);
                 pixels[place].add(luminance);
             });
@@ -80,7 +83,7 @@ impl<F: Fn(u64) + Send + Sync> Film<'_, F> {
             let (luminance, variance) = (pixel.mean, pixel.variance());
             noises[row].append(&Noise { pixels: 1, luminance, variance, faults: pixel.faults });
         }
-        if tracer.virtual_lights().is_some() {
+        if has_in_common {
             in_common(&mut noises, together);
         }
         (self.progress)((width * strip.height) as u64 * self.samples);

@@ -68,6 +68,8 @@ pub struct Camera {
     up: DVec3,
     forward: DVec3,
     projection: Projection,
+    /// Tangent of half the field of view, of pictures that lie in a plane; else 0.
+    tangent: f64,
     width: u32,
     height: u32,
 }
@@ -152,7 +154,13 @@ impl Camera {
         if width == 0 || height == 0 {
             return Err(Error::Resolution { width, height });
         }
-        Ok(Self { position, right, up: right.cross(forward), forward, projection, width, height })
+        let tangent = match projection {
+            Projection::Perspective { field_of_view_deg, .. } | Projection::ThinLens { field_of_view_deg, .. } => {
+                (0.5 * field_of_view_deg).to_radians().tan()
+            }
+            Projection::Fisheye { .. } | Projection::Equirectangular => 0.0,
+        };
+        Ok(Self { position, right, up: right.cross(forward), forward, projection, tangent, width, height })
     }
 
     /// Columns.
@@ -185,12 +193,11 @@ impl Camera {
             Some(Ray { origin, direction })
         };
         match self.projection {
-            Projection::Perspective { field_of_view_deg, distortion } => {
-                let tangents = p * (0.5 * field_of_view_deg).to_radians().tan();
-                ray(self.position, distortion.undistort(tangents)?.extend(1.0))
+            Projection::Perspective { distortion, .. } => {
+                ray(self.position, distortion.undistort(p * self.tangent)?.extend(1.0))
             }
-            Projection::ThinLens { field_of_view_deg, focus_m, .. } => {
-                let sharp = (p * (0.5 * field_of_view_deg).to_radians().tan()).extend(1.0) * focus_m;
+            Projection::ThinLens { focus_m, .. } => {
+                let sharp = (p * self.tangent).extend(1.0) * focus_m;
                 let through = self.through(lens);
                 let origin = self.position + through.x * self.right - through.y * self.up;
                 ray(origin, sharp - through.extend(0.0))
@@ -225,7 +232,7 @@ impl Camera {
         let (w, h) = (f64::from(self.width), f64::from(self.height));
         let place = |p: DVec2| DVec2::new(p.x * w + w, p.y * w + h) / 2.0;
         let shown = match self.projection {
-            Projection::Perspective { field_of_view_deg, distortion } => {
+            Projection::Perspective { distortion, .. } => {
                 let ideal = ahead(d)?;
                 let tangents = distortion.distort(ideal);
                 // What the lens folds over is not what the pixel's ray meets.
@@ -233,11 +240,11 @@ impl Camera {
                 if back.distance(ideal) > 1e-9 * (1.0 + ideal.length()) {
                     return None;
                 }
-                place(tangents / (0.5 * field_of_view_deg).to_radians().tan())
+                place(tangents / self.tangent)
             }
-            Projection::ThinLens { field_of_view_deg, focus_m, .. } => {
+            Projection::ThinLens { focus_m, .. } => {
                 let sharp = ahead(d)? + lens / focus_m;
-                place(sharp / (0.5 * field_of_view_deg).to_radians().tan())
+                place(sharp / self.tangent)
             }
             Projection::Fisheye { field_of_view_deg } => {
                 let across = d.truncate();
@@ -263,16 +270,16 @@ impl Camera {
     pub fn pixels_per_solid_angle(&self, direction: DVec3) -> f64 {
         let d = self.local(direction);
         let (w, h) = (f64::from(self.width), f64::from(self.height));
-        let flat = |field_of_view_deg: f64| {
-            let scale = 0.5 * w / (0.5 * field_of_view_deg).to_radians().tan();
+        let flat = || {
+            let scale = 0.5 * w / self.tangent;
             scale * scale / (d.z * d.z * d.z)
         };
         match self.projection {
-            Projection::Perspective { field_of_view_deg, distortion } => {
+            Projection::Perspective { distortion, .. } => {
                 let bent = ahead(d).map_or(0.0, |tangents| distortion.jacobian(tangents).determinant());
-                flat(field_of_view_deg) * bent
+                flat() * bent
             }
-            Projection::ThinLens { field_of_view_deg, .. } => flat(field_of_view_deg),
+            Projection::ThinLens { .. } => flat(),
             Projection::Fisheye { field_of_view_deg } => {
                 let (sin, half) = (d.truncate().length(), (0.5 * field_of_view_deg).to_radians());
                 // θ/sinθ

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::{Edge, PathTracer};
 use crate::render::integrator::frame::Frame;
+use crate::render::lanes::mean;
 use crate::render::material::Transport;
 use crate::render::ray::{Ray, SurfacePoint};
 
@@ -90,8 +91,4 @@ impl PathTracer<'_> {
         self.scene.lights().iter().for_each(|light| light.add_radiance(edge.ray.direction, &mut self.value));
         self.sight.emission += edge.chance * mean(&self.value);
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
