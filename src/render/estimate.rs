@@ -12,6 +12,9 @@ use crate::uncertainty::Stated;
 /// Independent streams of every estimate.
 pub const REPLICATES: usize = 32;
 
+/// Standard errors to each side that hold 95 %: Student's t of 31 degrees of freedom.
+pub const T_975: f64 = 2.039_513_446_396_409;
+
 /// Samples that were no finite number or negative: counted, and never averaged in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faults {
@@ -79,7 +82,7 @@ pub struct Estimate {
 pub struct Figure {
     /// The mean.
     pub value: f64,
-    /// Its standard error (one standard deviation of the mean).
+    /// Its standard error (one standard deviation of the mean); no number where nothing tells it.
     pub standard_error: f64,
 }
 
@@ -87,7 +90,6 @@ impl Figure {
     /// The standard error and the interval of 95 %, with Student's t of 31 degrees of freedom: [`REPLICATES`] less one.
     #[must_use]
     pub fn stated(&self) -> Stated {
-        const T_975: f64 = 2.039_513_446_396_409;
         Stated::of_mean(self.value, self.standard_error, T_975)
     }
 }

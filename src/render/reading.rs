@@ -241,16 +241,17 @@ pub fn of_gonioreflectometer(
     }
 }
 
-/// The mean luminance of a picture.
+/// The mean luminance of a picture; one sample of a pixel does not tell its standard error.
 #[must_use]
 pub fn of_picture(instrument: &Instrument, noise: &Noise, denoised: Option<Price>, samples_per_pixel: u64) -> Reading {
     #[expect(clippy::cast_precision_loss, reason = "a number of pixels")]
     let n = noise.pixels.max(1) as f64;
+    let standard_error = if samples_per_pixel > 1 { noise.variance.sqrt() / n } else { f64::NAN };
     Reading {
         name: instrument.name.clone(),
         quantity: "mean luminance of the picture",
         unit: "cd/m2",
-        figure: Figure { value: noise.luminance / n, standard_error: noise.variance.sqrt() / n },
+        figure: Figure { value: noise.luminance / n, standard_error },
         radiant: None,
         samples: noise.pixels * samples_per_pixel,
         faults: noise.faults,

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::render::bands::Bands;
 use crate::render::build::{Built, Kind};
-use crate::render::estimate::Figure;
+use crate::render::estimate::{Figure, T_975};
 use crate::render::goniophotometer::Measured;
 use crate::render::gonioreflectometer;
 use crate::render::guiding;
@@ -42,7 +42,7 @@ pub fn model(built: &Built) -> Value {
         left_out.push(if built.settings.packets {
             "light of one direction that polished surfaces throw on meters at a point"
         } else {
-            "light of one direction that polished surfaces throw on others"
+            "light of one direction that polished surfaces throw on others and on meters"
         });
     }
     if limits.max_edges.is_some() {
@@ -116,6 +116,7 @@ pub fn model(built: &Built) -> Value {
             "count": bands.len(),
             "nm": bands.wavelengths_nm(),
             "relative_error": built.wavelength_error,
+            "radiant_relative_error": built.radiant_error,
             "paths": paths,
         },
         "max_edges": limits.max_edges,
@@ -125,9 +126,9 @@ pub fn model(built: &Built) -> Value {
     })
 }
 
-/// One of `sensors`.
+/// One of `sensors`; `wavelength_error` is what sums over wavelength are off by at most, relative.
 #[must_use]
-pub fn sensor(reading: &Reading) -> Value {
+pub fn sensor(reading: &Reading, wavelength_error: f64) -> Value {
     let mut out = Map::new();
     let mut set = |key: &str, value: Value| {
         out.insert(key.to_owned(), value);
@@ -138,8 +139,10 @@ pub fn sensor(reading: &Reading) -> Value {
     set("value", reading.figure.value.into());
     set("standard_error", reading.figure.standard_error.into());
     // Radiosity has no scatter, and errs by its patches.
-    if reading.figure.standard_error > 0.0 {
-        set("expanded_95", json!(reading.figure.stated().expanded_95));
+    if reading.discretisation.is_none()
+        && let Some(interval) = interval(&reading.figure, wavelength_error)
+    {
+        set("expanded_95", json!(interval));
     }
     set("samples", reading.samples.into());
     if let Some(difference) = reading.discretisation {
@@ -189,6 +192,13 @@ pub fn sensor(reading: &Reading) -> Value {
         );
     }
     out.into()
+}
+
+/// The interval of 95 % of a reading, with what its wavelengths may leave out on both sides; `None` where neither is known to be above 0.
+fn interval(figure: &Figure, wavelength_error: f64) -> Option<[f64; 2]> {
+    let left_out = wavelength_error * figure.value.abs();
+    let [low, high] = figure.stated().expanded_95;
+    (figure.standard_error + left_out > 0.0).then_some([low - left_out, high + left_out])
 }
 
 fn spectrum(s: &Spectral) -> Value {
@@ -290,7 +300,7 @@ pub struct Seconds {
 #[must_use]
 pub fn result(built: &Built, readings: &[Reading], written: &[String], seconds: &Seconds) -> Value {
     json!({
-        "sensors": readings.iter().map(sensor).collect::<Vec<_>>(),
+        "sensors": readings.iter().map(|r| sensor(r, built.wavelength_error.unwrap_or(0.0))).collect::<Vec<_>>(),
         "model": model(built),
         "written": written,
         "seconds": seconds.total,
@@ -321,15 +331,18 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
         } else {
             let percent =
                 if r.figure.value == 0.0 { 0.0 } else { 100.0 * r.figure.standard_error / r.figure.value.abs() };
+            // One sample does not tell its own error.
+            let [error, share] = match r.figure.standard_error.is_nan() {
+                true => ["unknown".to_owned(), String::new()],
+                false => [significant(r.figure.standard_error, 2), format!(", {} %", significant(percent, 2))],
+            };
             let _ = writeln!(
                 out,
-                "{:width$}  {} ± {} {} ({}, {} %, {} samples)",
+                "{:width$}  {} ± {error} {} ({}{share}, {} samples)",
                 r.name,
                 significant(r.figure.value, 5),
-                significant(r.figure.standard_error, 2),
                 r.unit.replace("m2", "m²"),
                 r.quantity,
-                significant(percent, 2),
                 r.samples
             );
         }
@@ -375,10 +388,11 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
             let duv = s.duv.map_or_else(String::new, |d| format!(", Duv {d:.4}"));
             let xy = s.chromaticity_xy.map_or_else(String::new, |[x, y]| format!(", x {x:.4}, y {y:.4}"));
             let _ = writeln!(out, "{:width$}  {cct}{duv}{xy}", "");
+            out.push_str(&spectrum_text(s, r.unit, width));
         }
-        if let Some((relative, false)) = r.target {
-            let _ =
-                writeln!(out, "{:width$}  the target of {} % was not reached", "", significant(100.0 * relative, 3));
+        if let Some((relative, reached)) = r.target {
+            let reached = if reached { "reached" } else { "not reached" };
+            let _ = writeln!(out, "{:width$}  the target of {} % was {reached}", "", significant(100.0 * relative, 3));
         }
         if r.faults.count() > 0 {
             let _ = writeln!(
@@ -394,6 +408,33 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
         .wavelength_error
         .map_or_else(String::new, |e| format!(" (error of their sum up to {})", significant(e, 2)));
     let _ = writeln!(out, "\n{bands} wavelengths on every path{error}");
+    if readings.iter().any(|r| r.discretisation.is_none()) {
+        let interval = format!(
+            "{T_975:.2} times as much on either side, and the error of the sums over wavelength, hold the true value in 95 of 100 renders"
+        );
+        let _ = writeln!(out, "± is one standard error; {interval}");
+    }
+    out
+}
+
+/// A spectrum in rows of as many wavelengths as a line holds.
+fn spectrum_text(s: &Spectral, unit: &str, indent: usize) -> String {
+    const ROW: usize = 6;
+    let per_nm = match unit {
+        "lx" => "W/(m² nm)",
+        "lm" => "W/nm",
+        _ => "W/(m² sr nm)",
+    };
+    let mut out = format!("{:indent$}  spectrum, nm: {per_nm} (of a line its whole amount)\n", "");
+    let cells: Vec<String> = (s.wavelengths_nm.iter().zip(&s.bands))
+        .map(|(nm, band)| format!("{}: {}", significant(*nm, 6), significant(band.value, 4)))
+        .collect();
+    let wide = cells.iter().map(String::len).max().unwrap_or(0);
+    for row in cells.chunks(ROW) {
+        let row: Vec<String> = row.iter().map(|cell| format!("{cell:wide$}")).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{:indent$}    {}", "", row.join("  ").trim_end());
+    }
     out
 }
 
@@ -491,7 +532,11 @@ pub fn contents_text(built: &Built) -> String {
     let followed = if analysis.polarisation { "followed" } else { "left out" };
     let _ = writeln!(out, "polarisation is {followed}: {}", analysis.polarisation_because);
     if analysis.caustics && !built.settings.packets && built.settings.limits.follow == Follow::All {
-        let _ = writeln!(out, "pictures gain by `solver = \"bidirectional\"`: {}", analysis.caustics_because);
+        let _ = writeln!(
+            out,
+            "pictures, and meters on surfaces and flat grids, gain by `solver = \"bidirectional\"`: {}",
+            analysis.caustics_because
+        );
     }
     if !analysis.global {
         let _ = writeln!(out, "nothing scatters: there is only the light of the lamps");

@@ -157,6 +157,62 @@ fn a_target_out_of_reach_is_exit_code_1() {
     command.arg("--folder").arg(folder.path()).assert().code(1).stdout(contains("was not reached"));
 }
 
+/// By its name, and in a scene of nothing else without: the standard error of the mean luminance is the share asked for, with as many samples as that takes;
+/// or it says so. One sample of a pixel does not tell its error.
+#[test]
+fn pictures_have_targets() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let view = "[[sensor]]\nname = \"view\"\ncamera = { at = [0, -3, 1], look_at = [0, 0, 0], resolution = [8, 6] }\n";
+    let floor = "[[shape]]\nrectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }\n";
+    let run = |text: &str, options: &[&str], code: i32| -> Value {
+        let mut command = photopic();
+        command.arg("render").arg(scene(&folder, text)).args(["--json", "--packets", "0"]).args(options);
+        let output = command.output().expect("it runs");
+        assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        found["results"][0]["sensors"].as_array().expect("sensors").last().expect("a picture").clone()
+    };
+    let both = format!("{LAMP}{floor}{view}");
+    let only = format!("{}{floor}{view}", &LAMP[..LAMP.find("[[sensor]]").expect("a sensor")]);
+    for (text, target) in [(&both, "0.2 % view"), (&both, "0.2 % picture"), (&only, "0.2 %")] {
+        let found = run(text, &["--samples", "65536", "--target", target], 0);
+        let [value, error] = ["value", "standard_error"].map(|key| found[key].as_f64().expect("a number"));
+        assert!(value > 0.0 && error <= 0.002 * value, "{found}");
+        assert_eq!(found["target"]["reached"], true, "{found}");
+        let samples = found["samples"].as_u64().expect("a number");
+        assert!((16 * 48..4096 * 48).contains(&samples), "{found}");
+    }
+    let missed = run(&both, &["--samples", "20", "--target", "0.0001 % view"], 1);
+    assert_eq!(
+        (&missed["target"]["reached"], &missed["samples"]),
+        (&serde_json::json!(false), &serde_json::json!(20 * 48))
+    );
+    // Meters alone are meant where there are some.
+    let free = run(&both, &["--samples", "4", "--target", "10 %"], 0);
+    assert_eq!((&free["target"], &free["samples"]), (&Value::Null, &serde_json::json!(4 * 48)));
+    let one = run(&both, &["--samples", "1"], 0);
+    assert!(one["standard_error"].is_null() && one.get("expanded_95").is_none(), "{one}");
+}
+
+/// A meter behind a pane, which alone is polished: what the lamp throws through it no path meets, and that is said of those that miss it.
+#[test]
+fn light_that_no_path_meets_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pane = "[[material]]\nname = \"glass\"\npane = { index = 1.5 }\n[[shape]]\nmaterial = \"glass\"\nrectangle = { corner = [-1, -1, 1], edges = [[2, 0, 0], [0, 2, 0]] }\n";
+    let grid = "[[sensor]]\nname = \"desk\"\nilluminance = { grid = { corner = [-0.1, -0.1, 0], edges = [[0.2, 0, 0], [0, 0.2, 0]], points = [2, 2] } }\n";
+    let told = |solver: &str, shapes: &str| -> Vec<String> {
+        let text = format!("{solver}{shapes}{LAMP}{grid}");
+        let out = json(photopic().arg("render").arg(scene(&folder, &text)).args(["--json", "--meter-samples", "64"]));
+        let findings = out["findings"].as_array().expect("findings").iter().filter(|f| f["code"] == "R012");
+        findings.map(|f| f["message"].as_str().expect("a message").to_owned()).collect()
+    };
+    let path = told("", pane);
+    assert!(path.len() == 1 && path[0].contains("(lamp)") && path[0].contains("`below`, `desk`"), "{path:?}");
+    let both = told("[render]\nsolver = \"bidirectional\"\n", pane);
+    assert!(both.len() == 1 && both[0].contains("`below`") && !both[0].contains("desk"), "{both:?}");
+    assert_eq!(told("", &pane.replace("pane = { index = 1.5 }", "reflectance = 0.5")), Vec::<String>::new());
+}
+
 #[test]
 fn mistakes_are_told_with_file_line_and_column() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -187,7 +243,7 @@ fn mistakes_are_told_with_file_line_and_column() {
         .args(["--target", "1 % nits"])
         .assert()
         .code(2)
-        .stderr(contains("no meter is meant"));
+        .stderr(contains("no sensor is meant"));
     photopic().arg("render").arg(&path).args(["--target", "1"]).assert().code(2);
 }
 

@@ -17,6 +17,8 @@ use crate::luminaire::format::{self, ReadOptions};
 use crate::render::build::{Built, Files, Instrument, Kind, PictureFile};
 use crate::render::denoise::Price;
 use crate::render::format::{self as mesh, Object};
+use crate::render::integrator::limits::Follow;
+use crate::render::measure::Place;
 use crate::render::reading::Reading;
 use crate::report::envelope::Input;
 use crate::spectrum::Spectrum;
@@ -174,6 +176,14 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         );
         Finding::warning("R001", message).at(Location::default().in_file(path))
     });
+    let missed = missed(built).map(|(lights, sensors)| {
+        let message = format!(
+            "light of one direction ({lights}) that comes through glass or off mirrors is left out of what {sensors} read"
+        );
+        Finding::warning("R012", message)
+            .at(Location::default().in_file(path))
+            .hint("the solver `bidirectional` finds it on surfaces and flat grids, no solver at a single point; a small shape that shines has a direction to be met from")
+    });
     // What is known is the error of a half, which is sampled with twice the variance.
     let is_worse = |price: &Price| price.after > std::f64::consts::SQRT_2 * price.before;
     let filtered = readings.iter().filter_map(|r| Some((r, r.denoised.filter(is_worse)?)));
@@ -185,5 +195,23 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
             .at(Location::default().in_file(path))
             .hint("leave out `denoise`, or take more samples")
     });
-    incomplete.chain(dark).chain(preview).chain(endless).chain(faults).chain(filtered).collect()
+    incomplete.chain(dark).chain(preview).chain(endless).chain(missed).chain(faults).chain(filtered).collect()
+}
+
+/// The lights of which polished surfaces throw what no path meets, and the sensors that miss it.
+fn missed(built: &Built) -> Option<(String, String)> {
+    let (settings, analysis) = (&built.settings, &built.analysis);
+    if !analysis.caustics_missed || built.radiosity.is_some() || settings.limits.follow == Follow::Nothing {
+        return None;
+    }
+    // Packets land on surfaces, and are connected with lenses.
+    let is_missed = |place: &Place| !settings.packets || matches!(place, Place::Point(_));
+    let misses = |i: &&Instrument| match &i.kind {
+        Kind::Meter(meter) => !matches!(meter.place, Place::Around) && is_missed(&meter.place),
+        Kind::Grid { meters, .. } => meters.iter().any(|meter| is_missed(&meter.place)),
+        Kind::Camera(_) => !settings.packets,
+        Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => false,
+    };
+    let sensors: Vec<String> = built.instruments.iter().filter(misses).map(|i| format!("`{}`", i.name)).collect();
+    (!sensors.is_empty()).then(|| (analysis.closed_form_lights.join(", "), sensors.join(", ")))
 }

@@ -16,7 +16,7 @@ use clap::Args;
 
 use super::output::{self, Sink};
 use super::{Failure, Talk};
-use crate::render::build::{Built, Kind};
+use crate::render::build::{Built, Instrument, Kind};
 use crate::render::description::{self, Model, Solver};
 use crate::render::reading;
 use crate::render::spool::Share;
@@ -71,8 +71,8 @@ pub(super) struct RenderArgs {
     /// Names all random numbers, instead of the scene's.
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
-    /// Sample the meters until their standard errors are this share of their readings; with a name or `lux` or `nits` only those.
-    /// Exit code 1 where that takes more than the samples allowed.
+    /// Sample the meters until their standard errors are this share of their readings; with a name or `lux`, `nits`, `lm` only those, with a camera's name or
+    /// `picture` pictures until that of their mean luminance is. Exit code 1 where that takes more than the samples allowed.
     #[arg(long, value_name = "'SHARE % [WHICH]'", value_parser = target)]
     target: Option<TargetArg>,
     /// Keep the state of the render in a file, and go on from it where the file is there already.
@@ -102,7 +102,7 @@ pub(super) struct RenderArgs {
 /// Packets of the energy audit, where no number is given.
 const PACKETS: u64 = 1 << 14;
 
-/// A relative standard error and the meters that it is for.
+/// A relative standard error and the sensors that it is for.
 #[derive(Debug, Clone, PartialEq)]
 struct TargetArg {
     relative: f64,
@@ -181,6 +181,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
         seed: a.seed,
         model: a.model,
         denoise: a.denoise,
+        target: a.target.as_ref().map(|t| t.relative),
         settings: a.settings.as_deref().map(Settings::read).transpose()?.unwrap_or_default(),
     };
     let work = Work::new(path, &overrides)?;
@@ -244,6 +245,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
         seed: Some(task.seed),
         model: Some(if task.full { Model::Full } else { Model::Minimal }),
         denoise: task.denoise,
+        target: None,
         settings: Settings::parse(&format!("{}: settings", a.shards[0]), task.settings.clone())?,
     };
     let work = Work::new(&task.scene, &overrides)?;
@@ -265,8 +267,13 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
     let unit = |kind: &Kind| match kind {
         Kind::Meter(m) => Some(reading::quantity(&m.response).1),
         Kind::Grid { meters, .. } => Some(reading::quantity(&meters[0].response).1),
-        Kind::Camera(_) | Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => None,
+        // Its mean luminance.
+        Kind::Camera(_) => Some("picture"),
+        Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_) => None,
     };
+    let is_picture = |i: &Instrument| matches!(i.kind, Kind::Camera(_));
+    // A target for no sensor by name is for all meters, or for pictures where there is nothing else.
+    let only_pictures = built.instruments.iter().all(is_picture);
     let mut any = false;
     let targets = (built.instruments.iter())
         .map(|i| {
@@ -277,10 +284,11 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
             }
             let Some(t) = &a.target else { return i.target };
             let meant = match t.which.as_deref() {
-                None => true,
+                None => only_pictures || !is_picture(i),
                 Some("lux" | "lx") => unit == "lx",
                 Some("nits" | "nit" | "cd/m2") => unit == "cd/m2",
                 Some("lm") => unit == "lm",
+                Some("picture" | "pictures") => unit == "picture",
                 Some(name) => name == i.name,
             };
             any |= meant;
@@ -291,9 +299,9 @@ fn targets(a: &RenderArgs, built: &Built) -> Result<Vec<Option<f64>>, Failure> {
         Some(t) if !any => {
             let names: Vec<&str> =
                 built.instruments.iter().filter(|i| unit(&i.kind).is_some()).map(|i| i.name.as_str()).collect();
-            let which = t.which.as_deref().unwrap_or("any meter");
+            let which = t.which.as_deref().unwrap_or("any sensor");
             Err(Failure::Message(format!(
-                "--target: no meter is meant by `{which}`; expected lux, nits, lm or one of: {}",
+                "--target: no sensor is meant by `{which}`; expected lux, nits, lm, picture or one of: {}",
                 names.join(", ")
             )))
         }

@@ -139,6 +139,18 @@ impl<'a> Job<'a> {
         Ok(noise)
     }
 
+    /// The same with another number of samples a pixel.
+    pub(super) fn with_samples(self, samples: u64) -> Self {
+        Self { samples, ..self }
+    }
+
+    /// What a picture of so many samples a pixel takes, in samples.
+    pub(super) fn work(&self) -> u64 {
+        let survey = if self.adaptive { film::survey_samples(self.samples) } else { 0 };
+        let packets = if self.built.settings.packets { self.samples } else { 0 };
+        u64::from(self.camera.width()) * u64::from(self.camera.height()) * (self.samples + survey + packets)
+    }
+
     /// Renders the picture and writes what the scene asks for: its noise, and how far the pixels are off where it is filtered. With a state, the
     /// rows go there first, as picture `state.1`.
     pub(super) fn render(

@@ -17,10 +17,9 @@ use crate::cli::output::Sink;
 use crate::cli::{Failure, Talk};
 use crate::finding::Finding;
 use crate::render::audit::{Audit, bias, energy};
-use crate::render::build::{Built, Kind, build};
+use crate::render::build::{Built, Instrument, Kind, build};
 use crate::render::description::{self, Description, Model, Solver};
-use crate::render::estimate::REPLICATES;
-use crate::render::film;
+use crate::render::estimate::{Figure, REPLICATES};
 use crate::render::goniophotometer::Run;
 use crate::render::measure::{Board, Meter, Target};
 use crate::render::radiosity::Summary;
@@ -30,6 +29,8 @@ use crate::report::envelope::{Envelope, Input};
 use crate::report::render::{self as report, Seconds};
 use crate::report::render_audit;
 
+/// Samples of a pixel with which a picture with a target is begun: from so many on it is found out where they go.
+const FEWEST: u64 = 16;
 /// Rounds in which meters without a target are sampled: so often the bar moves.
 const ROUNDS: u64 = 64;
 
@@ -42,6 +43,8 @@ pub(super) struct Overrides {
     pub model: Option<Model>,
     /// Pictures are filtered.
     pub denoise: bool,
+    /// The relative standard error that is asked for.
+    pub target: Option<f64>,
     pub settings: Settings,
 }
 
@@ -101,6 +104,7 @@ impl Work {
         render.meter_samples = overrides.meter_samples.unwrap_or(render.meter_samples);
         render.seed = overrides.seed.unwrap_or(render.seed);
         render.model = overrides.model.unwrap_or(render.model);
+        render.wavelength_tolerance = overrides.target.into_iter().fold(render.wavelength_tolerance, f64::min);
         if overrides.denoise {
             render.denoise = Some(toml::Spanned::new(0..0, true));
         }
@@ -170,12 +174,14 @@ impl Work {
         }
         let render = &self.description.render;
         let per_replicate = render.meter_samples.div_ceil(REPLICATES as u64);
-        let others: u64 = (self.built.instruments.iter())
-            .map(|i| match &i.kind {
-                Kind::Camera(c) => {
-                    let survey = if render.adaptive { film::survey_samples(render.samples) } else { 0 };
-                    let packets = if self.built.settings.packets { render.samples } else { 0 };
-                    u64::from(c.width()) * u64::from(c.height()) * (render.samples + survey + packets)
+        let others: u64 = (self.built.instruments.iter().enumerate())
+            .map(|(n, instrument)| match &instrument.kind {
+                Kind::Camera(camera) => {
+                    let picture = pictures::Job::new(self, job, n, camera);
+                    match job.targets[n] {
+                        Some(_) => picture.with_samples(FEWEST.min(render.samples)).work(),
+                        None => picture.work(),
+                    }
                 }
                 Kind::Goniophotometer(_) => render.meter_samples,
                 Kind::Gonioreflectometer(g) => render.meter_samples * g.incident() as u64,
@@ -190,7 +196,10 @@ impl Work {
             state.restore(&mut board, self.meters.len(), per_replicate)?;
         }
         let mut reached = vec![None; self.built.instruments.len()];
-        if job.targets.iter().all(Option::is_none) {
+        // Of pictures each is rendered to its own.
+        let of_meters = |n: &usize| !matches!(self.built.instruments[*n].kind, Kind::Camera(_));
+        let targets = || (0..).zip(job.targets).filter_map(|(n, t)| Some((n, (*t)?))).filter(|(n, _)| of_meters(n));
+        if targets().next().is_none() {
             for round in 1..=ROUNDS {
                 board.sample_until(per_replicate * round / ROUNDS);
                 progress.set_position(meter_work * round / ROUNDS);
@@ -199,7 +208,7 @@ impl Work {
                 }
             }
         }
-        for (n, relative) in (0..).zip(job.targets).filter_map(|(n, t)| Some((n, (*t)?))) {
+        for (n, relative) in targets() {
             // All meters are sampled alike: those without a target get as many samples as those with one.
             let weights = self.built.quantities.luminous.clone();
             let target = Target { relative, meters: (self.first[n]..self.first[n + 1]).collect(), weights };
@@ -214,9 +223,13 @@ impl Work {
         let mut picture = 0;
         for (n, instrument) in self.built.instruments.iter().enumerate() {
             if let Kind::Camera(camera) = &instrument.kind {
-                let job = pictures::Job::new(self, job, n, camera);
+                let one = pictures::Job::new(self, job, n, camera);
+                if let Some(relative) = job.targets[n] {
+                    done.readings.push(self.picture_to(relative, instrument, one, &progress, &mut done.written)?);
+                    continue;
+                }
                 let stored = state.as_deref_mut().map(|s| (s, picture));
-                let (noise, price) = job.render(stored, &progress, &mut done.written)?;
+                let (noise, price) = one.render(stored, &progress, &mut done.written)?;
                 picture += 1;
                 done.readings.push(reading::of_picture(instrument, &noise, price, render.samples));
             } else if let Kind::Goniophotometer(goniophotometer) = &instrument.kind {
@@ -260,6 +273,39 @@ impl Work {
         }
         progress.finish_and_clear();
         Ok((job.share == Share::WHOLE).then_some(done))
+    }
+
+    /// Renders a picture with more samples each time, at most as many as it would have, until the standard error of its mean luminance is this share of
+    /// it.
+    fn picture_to(
+        &self,
+        relative: f64,
+        instrument: &Instrument,
+        mut picture: pictures::Job<'_>,
+        progress: &ProgressBar,
+        written: &mut Vec<String>,
+    ) -> Result<Reading, Failure> {
+        /// The variance falls as 1/N, or faster; it is itself known to a few per cent.
+        const MARGIN: f64 = 1.1;
+        let (most, others) = (picture.samples, written.len());
+        picture = picture.with_samples(FEWEST.min(most));
+        loop {
+            written.truncate(others);
+            let (noise, price) = picture.render(None, progress, written)?;
+            let mut reading = reading::of_picture(instrument, &noise, price, picture.samples);
+            let off = reading.figure.standard_error / (relative * reading.figure.value.abs());
+            let samples = picture.samples;
+            // Of darkness without noise nothing is left to be known.
+            let met = off <= 1.0 || reading.figure == Figure { value: 0.0, standard_error: 0.0 };
+            if met || samples >= most {
+                reading.target = Some((relative, met));
+                return Ok(reading);
+            }
+            let wanted = samples as f64 * off * off * MARGIN;
+            let next = if wanted < most as f64 { (wanted.ceil() as u64).clamp(samples + 1, most) } else { most };
+            picture = picture.with_samples(next);
+            progress.inc_length(picture.work());
+        }
     }
 
     /// Where the energy goes, by so many packets of flux, and what the solver leaves out of every reading.

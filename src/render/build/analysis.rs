@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Builder;
 use super::material::Named;
 use crate::render::description;
+use crate::render::description::sensor::Sensor;
 use crate::render::description::surface::Shape as Described;
 use crate::render::light::Light;
 use crate::render::material::{Material, Nature};
@@ -30,7 +31,7 @@ pub struct Analysis {
     pub anisotropic: Vec<String>,
     /// Whether anything scatters: otherwise the light of the lamps is all there is.
     pub global: bool,
-    /// Whether light is gathered or thrown by polished surfaces onto others, which packets from the lights find and paths from the camera do
+    /// Whether light is gathered or thrown by polished surfaces onto others or onto meters, which packets from the lights find and paths from the camera do
     /// not, or hardly.
     pub caustics: bool,
     /// Why, or why not.
@@ -82,12 +83,18 @@ impl Builder<'_> {
         let refracts = parts.iter().any(|p| p.material.has_delta() && p.material.is_transmissive());
         let one_direction = lights.iter().any(|(_, light)| light.is_one_direction());
         let scatters = parts.iter().any(|p| !p.material.is_delta() && !is_black(p.material.as_ref(), bands));
-        let (caustics, caustics_because) = match (polished_surfaces, scatters, one_direction, refracts) {
+        let is_meter = |s: &Sensor| {
+            s.illuminance.is_some() || s.cylindrical.is_some() || s.hemispherical.is_some() || s.spherical.is_some()
+        };
+        let receives = scatters || self.description.sensor.iter().any(is_meter);
+        let (caustics, caustics_because) = match (polished_surfaces, receives, one_direction, refracts) {
             (0, ..) => (false, "nothing is polished"),
-            (_, false, ..) => (false, "nothing scatters what polished surfaces throw on it"),
-            (_, _, true, _) => (true, "paths from the camera never meet a light of one direction in polished surfaces"),
-            (_, _, _, true) => (true, "paths from the camera meet lights through glass only by chance"),
-            _ => (true, "paths from the camera meet lights in mirrors only by chance"),
+            (_, false, ..) => (false, "nothing scatters what polished surfaces throw on it, and no meter receives it"),
+            (_, _, true, _) => {
+                (true, "paths from a camera or a meter never meet a light of one direction in polished surfaces")
+            }
+            (_, _, _, true) => (true, "paths from a camera or a meter meet lights through glass only by chance"),
+            _ => (true, "paths from a camera or a meter meet lights in mirrors only by chance"),
         };
         Analysis {
             full,

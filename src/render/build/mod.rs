@@ -109,6 +109,8 @@ pub struct Built {
     /// The error that is left in sums over wavelength, relative: measured on the products of the scene's own spectra, against 1 nm;
     /// `None` where the step was asked for.
     pub wavelength_error: Option<f64>,
+    /// The same of their watts.
+    pub radiant_error: Option<f64>,
     /// What of the model of light the scene needs.
     pub analysis: Analysis,
     /// Names of the lights, in the order of the scene's.
@@ -200,7 +202,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let (text, description) = (builder.text, builder.description);
     builder.check_names()?;
     let colours = colour::Colours::new(builder)?;
-    let (bands, wavelength_error) = builder.bands(&colours)?;
+    let (bands, errors) = builder.bands(&colours)?;
     let quantities = Quantities::new(&bands);
     let materials = builder.materials(&bands)?;
     let (mut parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
@@ -278,7 +280,8 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
         settings,
         radiosity,
         quantities,
-        wavelength_error,
+        wavelength_error: errors.map(|e| e[0]),
+        radiant_error: errors.map(|e| e[1]),
         analysis,
         light_names,
         material_names,
@@ -332,8 +335,9 @@ impl Builder<'_> {
         unique(d.sensor.iter().map(|s| &s.name).collect(), "sensor")
     }
 
-    /// The wavelengths to carry: as asked for, or as few as the scene's spectra allow, and the lines of its line sources.
-    fn bands(&self, colours: &colour::Colours) -> Result<(Bands, Option<f64>), Error> {
+    /// The wavelengths to carry: as asked for, or as few as the scene's spectra allow, and the lines of its line sources; with the errors that are left, of
+    /// weighted sums and of watts.
+    fn bands(&self, colours: &colour::Colours) -> Result<(Bands, Option<[f64; 2]>), Error> {
         let render = &self.description.render;
         if render.wavelength_tolerance.is_nan() || render.wavelength_tolerance <= 0.0 {
             return Err(self.wrong(
@@ -346,7 +350,7 @@ impl Builder<'_> {
             .chain(Observer::Cie1931.colour_matching_functions())
             .collect();
         let lines = colours.lines();
-        let (bands, error) = match render.wavelength_step_nm {
+        let (bands, errors) = match render.wavelength_step_nm {
             Some(step) if (1.0..=100.0).contains(&step) => {
                 let first = super::bands::RANGE_NM.0 + if step > 1.0 { (0.5 * step).floor() } else { 0.0 };
                 (Bands::uniform(first, step), None)
@@ -355,16 +359,19 @@ impl Builder<'_> {
                 let message = format!("a `wavelength_step_nm` of {step}; expected 1 to 100");
                 return Err(self.wrong(&(0..0), message));
             }
-            None if render.model == Model::Full => (Bands::uniform(super::bands::RANGE_NM.0, 1.0), Some(0.0)),
-            None if !colours.has_densities() && !lines.is_empty() => return Ok((Bands::lines(lines), Some(0.0))),
+            None if render.model == Model::Full => (Bands::uniform(super::bands::RANGE_NM.0, 1.0), Some([0.0; 2])),
+            None if !colours.has_densities() && !lines.is_empty() => return Ok((Bands::lines(lines), Some([0.0; 2]))),
             None => {
                 let products = colours.products();
                 let functions: Vec<&dyn Fn(f64) -> f64> = products.iter().map(|p| p.as_ref() as _).collect();
-                let (bands, error) = Bands::choose(&functions, &weightings, render.wavelength_tolerance);
-                (bands, Some(error))
+                // What a reading is to be known to its wavelengths must be able to tell.
+                let targets = self.description.sensor.iter().filter_map(|s| s.target.as_ref().map(|t| t.0));
+                let tolerance = targets.fold(render.wavelength_tolerance, f64::min);
+                let chosen = Bands::choose(&functions, &weightings, tolerance);
+                (chosen.bands, Some([chosen.error, chosen.radiant_error]))
             }
         };
-        Ok((bands.and_lines(&lines), error))
+        Ok((bands.and_lines(&lines), errors))
     }
 
     /// The values of a spectrum in the bands. Beyond its table a reflectance (`edge`) goes on as it ends, an emission is 0.

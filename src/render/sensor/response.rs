@@ -3,7 +3,7 @@
 //! | reading | R(ω), θ to the meter's axis | source |
 //! |---|---|---|
 //! | irradiance (illuminance) on a plane | cosθ above the plane | ILV 17-21-053 |
-//! | hemispherical | (1 + cosθ)/2 | CIE 202:2011, half a sphere's mean over its surface |
+//! | hemispherical | (1 + cosθ)/4 | EN 12665, EN 13201-3: the flux on the curved surface of half a sphere over its area |
 //! | cylindrical | sinθ/π | ILV 17-21-058 |
 //! | spherical (scalar) | 1/4 | a sphere's mean over its surface |
 //! | flux through all that surrounds the scene | 1 | ILV 17-25-074, an ideal integrating sphere |
@@ -20,7 +20,7 @@ use crate::math::sampling;
 pub enum Response {
     /// Irradiance on a plane that faces +z.
     Planar,
-    /// Mean irradiance of a small hemisphere's outer surface, pole at +z.
+    /// Mean irradiance of a small hemisphere's curved outer surface, pole at +z.
     Hemispherical,
     /// Mean irradiance of a small upright cylinder's side, axis z.
     Cylindrical,
@@ -42,7 +42,7 @@ impl Response {
         let cos = direction.z;
         match *self {
             Self::Planar => cos.max(0.0),
-            Self::Hemispherical => 0.5 * (1.0 + cos),
+            Self::Hemispherical => 0.25 * (1.0 + cos),
             Self::Cylindrical => direction.x.hypot(direction.y) / PI,
             Self::Spherical => 0.25,
             Self::Flux => 1.0,
@@ -106,11 +106,12 @@ mod tests {
         Response::Cone { sin: 0.01 },
     ];
 
-    /// Under a uniform sky of radiance 1 all round: π, 2π, π, π, 4π, and the mean radiance 1, by the integrals of the weights over the sphere.
+    /// Under a uniform sky of radiance 1 all round: π on every surface that is seen from its outside, whatever its shape, 4π, and the mean radiance 1, by the
+    /// integrals of the weights over the sphere.
     #[test]
     fn readings_of_a_uniform_sphere_of_light() {
         let n = 300;
-        for (response, expected) in ALL.iter().zip([PI, TAU, PI, PI, 2.0 * TAU, 1.0, 1.0]) {
+        for (response, expected) in ALL.iter().zip([PI, PI, PI, PI, 2.0 * TAU, 1.0, 1.0]) {
             let mut sum = 0.0;
             for i in 0..n {
                 for j in 0..n {
@@ -125,6 +126,22 @@ mod tests {
             // Midpoint rule: the root at the ends of sinθ's weight, the least smooth, costs below n^-3/2.
             let mean = sum / f64::from(n * n);
             assert!((mean / expected - 1.0).abs() < f64::from(n).powf(-1.5), "{response:?}: {mean}");
+        }
+    }
+
+    /// Parallel light of irradiance 1 at the angle θ to the axis falls on half a sphere as on its shadow, half a disk and half an ellipse:
+    /// π r² (1 + cosθ)/2 of its 2π r²; a sphere's shadow is a quarter of its surface, that of a cylinder's side 2 r h sinθ of 2π r h.
+    #[test]
+    fn means_over_a_surface_are_shadows() {
+        for degrees in [0.0_f64, 30.0, 90.0, 150.0, 180.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let from = DVec3::new(0.6 * sin, 0.8 * sin, cos);
+            let expected = [PI * (1.0 + cos) / 2.0 / TAU, 0.25, 2.0 * sin / TAU];
+            for (response, expected) in
+                [Response::Hemispherical, Response::Spherical, Response::Cylindrical].iter().zip(expected)
+            {
+                assert!((response.weight(from) - expected).abs() < 1e-15, "{response:?} at {degrees}°");
+            }
         }
     }
 }
