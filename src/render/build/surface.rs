@@ -145,7 +145,8 @@ impl Builder<'_> {
             out.push((s.span(), one(Cylinder::new(v(c.from), v(c.to), c.radius.0, c.closed))));
         }
         if let Some(m) = &shape.mesh {
-            out.push((m.span(), Ok(self.meshes(m.get_ref(), &m.span())?)));
+            let pattern = shape.material.as_ref().and_then(|name| Some((name, self.pattern(name.get_ref())?)));
+            out.push((m.span(), Ok(self.meshes(m.get_ref(), &m.span(), pattern)?)));
         }
         let mut kinds = out.into_iter();
         match (kinds.next(), kinds.next()) {
@@ -161,8 +162,20 @@ impl Builder<'_> {
         }
     }
 
-    /// The meshes of a file, in their places.
-    fn meshes(&self, m: &DescribedMesh, at: &Range<usize>) -> Result<Vec<Arc<dyn Shape>>, Error> {
+    /// What varies over the texture coordinates in a material.
+    fn pattern(&self, material: &str) -> Option<&'static str> {
+        let found = self.description.material.iter().find(|m| m.name.get_ref() == material)?;
+        let texture = found.texture.is_some().then_some("texture");
+        texture.or_else(|| found.checkerboard.is_some().then_some("checkerboard"))
+    }
+
+    /// The meshes of a file, in their places; the material's name and its pattern, where it has one.
+    fn meshes(
+        &self,
+        m: &DescribedMesh,
+        at: &Range<usize>,
+        pattern: Option<(&Spanned<String>, &str)>,
+    ) -> Result<Vec<Arc<dyn Shape>>, Error> {
         let mut out: Vec<Arc<dyn Shape>> = Vec::new();
         let base = self.transform(&m.transform, at)?;
         let copies = match &m.instances {
@@ -170,6 +183,14 @@ impl Builder<'_> {
             Some(all) => all.iter().map(|s| Ok(self.transform(s, at)? * base)).collect::<Result<_, Error>>()?,
         };
         for mesh in self.searched(m, at)? {
+            if let Some((name, pattern)) = pattern.filter(|_| !mesh.has_uvs()) {
+                let message = format!(
+                    "material `{}` has a {pattern}, and {} no texture coordinates; expected a mesh with them (`vt` of OBJ, `u` and `v` or `s` and `t` of PLY, TEXCOORD_0 of glTF)",
+                    name.get_ref(),
+                    m.file
+                );
+                return Err(self.wrong(&name.span(), message));
+            }
             for to_world in &copies {
                 let placed = PlacedMesh::new(Arc::clone(&mesh), *to_world);
                 let message = "a transform that cannot be undone; expected a scale other than 0";
