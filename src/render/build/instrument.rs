@@ -267,6 +267,42 @@ impl Builder<'_> {
         })
     }
 
+    /// No meter stands on a light without extent, which is infinite there.
+    pub(super) fn off_lights(&self, instruments: &[Instrument], dark_lights: &[String]) -> Result<(), Error> {
+        let points = self.description.light.iter().enumerate().filter_map(|(number, light)| {
+            let point = light.point.as_ref().map(|l| l.get_ref().at);
+            let spot = || light.spot.as_ref().map(|l| l.get_ref().at);
+            let lamp = || light.lamp.as_ref().filter(|l| !l.get_ref().opening).map(|l| l.get_ref().at);
+            let at = DVec3::from_array(point.or_else(spot).or_else(lamp)?);
+            let name = super::light::name(light, number);
+            (!dark_lights.contains(&name)).then_some((at, name))
+        });
+        let points: Vec<(DVec3, String)> = points.collect();
+        for (sensor, instrument) in self.description.sensor.iter().zip(instruments) {
+            let (one, many) = match &instrument.kind {
+                Kind::Meter(meter) => (Some(meter), &[][..]),
+                Kind::Grid { meters, .. } => (None, meters.as_slice()),
+                _ => continue,
+            };
+            let places = one.into_iter().chain(many).filter_map(|meter| match &meter.place {
+                Place::Point(point) => Some(point.position),
+                Place::Area(_) | Place::Around => None,
+            });
+            for place in places {
+                // 1/r² is beyond all numbers nearer than that.
+                let on = points.iter().find(|(at, _)| (1.0 / at.distance(place) / at.distance(place)).is_infinite());
+                if let Some((_, name)) = on {
+                    let message = format!(
+                        "sensor `{}` stands on light `{name}`, whose light is infinite there; expected a place off it",
+                        instrument.name
+                    );
+                    return Err(self.wrong(&sensor.name.span(), message));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Instruments around everything need lights that they can be around.
     fn in_bounds(&self, span: &Range<usize>) -> Result<(), Error> {
         let inside = |l: &Light| l.point.is_some() || l.spot.is_some() || l.lamp.is_some();

@@ -27,6 +27,11 @@ use crate::render::light::sky::{Sky, SkyType};
 use crate::render::light::spot::{Profile, Spot};
 use crate::render::light::sun::{Air, Moment, SunPosition};
 
+/// The name of a light in reports.
+pub(super) fn name(light: &Described, number: usize) -> String {
+    light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone())
+}
+
 /// The place of a light's kind in the text.
 pub(super) fn span(light: &Described) -> Range<usize> {
     let kinds = [

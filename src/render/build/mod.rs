@@ -207,7 +207,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let sphere = around(&parts);
     let mut lights: Vec<(String, Arc<dyn Light>)> = Vec::new();
     for (number, light) in description.light.iter().enumerate() {
-        let name = light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone());
+        let name = light::name(light, number);
         lights.push((name, builder.light(light, number, &bands, &quantities, sphere)?));
     }
     let (mut dark_lights, mut out_of_reach) = (Vec::new(), Vec::new());
@@ -237,6 +237,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     }
     let scene = Scene::new(bands, parts, lights);
     let instruments = builder.instruments(&scene, &surfaces)?;
+    builder.off_lights(&instruments, &analysis.dark_lights)?;
     let radiosity = builder.radiosity(&scene, &surfaces, &instruments)?;
     let render = &description.render;
     let follow = match render.solver {
@@ -329,6 +330,7 @@ impl Builder<'_> {
         };
         unique(d.material.iter().map(|m| &m.name).collect(), "material")?;
         unique(d.shape.iter().filter_map(|s| s.name.as_ref()).collect(), "shape")?;
+        unique(d.light.iter().filter_map(|l| l.name.as_ref()).collect(), "light")?;
         unique(d.sensor.iter().map(|s| &s.name).collect(), "sensor")
     }
 
