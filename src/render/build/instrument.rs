@@ -393,6 +393,11 @@ impl Builder<'_> {
                 self.wrong(span, "`distortion`, `aperture_radius` and `focus` belong to the perspective projection")
             );
         }
+        if c.projection == Layout::Equirectangular && c.field_of_view.is_some() {
+            let message =
+                "`field_of_view` of a camera that sees all directions; expected it of a perspective or a fisheye";
+            return Err(self.wrong_key(span, &["field_of_view"], message));
+        }
         let up = DVec3::from_array(c.up.unwrap_or([0.0, 0.0, 1.0]));
         let (at, target) = (DVec3::from_array(c.at), DVec3::from_array(c.look_at));
         Camera::new(at, target, up, projection, c.resolution).map_err(|e| self.wrong(span, e))
