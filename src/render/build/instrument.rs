@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Builder;
+use super::light::degrees;
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
 use crate::geometry::lens::Distortion;
@@ -125,7 +126,9 @@ impl Builder<'_> {
             let axis = DVec3::from_array(m.look_at) - DVec3::from_array(m.at);
             let half = 0.5 * m.acceptance.map_or(ACCEPTANCE_DEG.to_radians(), |a| a.0);
             if !(half > 0.0 && half <= std::f64::consts::FRAC_PI_2) {
-                return Err(self.wrong(&l.span(), "an `acceptance` that is not above 0 and at most 180 deg"));
+                let found = degrees(2.0 * half);
+                let message = format!("`acceptance` is {found} deg; expected above 0 to 180 deg");
+                return Err(self.wrong_key(&l.span(), &["acceptance"], message));
             }
             kinds.push(meter(m.at, self.unit(axis.to_array(), &l.span())?, Response::Cone { sin: half.sin() }));
         }
@@ -160,17 +163,18 @@ impl Builder<'_> {
             );
             return Err(self.wrong(&sensor.name.span(), message));
         };
-        if sensor.target.is_some_and(|t| t.0.is_nan() || t.0 <= 0.0) {
-            return Err(self.wrong(&sensor.name.span(), "a `target` that is not above 0"));
+        let wrong_key = |key, message: &str| Err(self.wrong_key(&sensor.name.span(), &[key], message));
+        if let Some(t) = sensor.target.filter(|t| t.0.is_nan() || t.0 <= 0.0) {
+            return wrong_key("target", &format!("`target` is {} %; expected above 0 %", 100.0 * t.0));
         }
         let fixed = matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
         if fixed && sensor.target.is_some() {
             let message = "a `target` of an instrument that takes a fixed number of packets; expected `meter_samples`";
-            return Err(self.wrong(&sensor.name.span(), message));
+            return wrong_key("target", message);
         }
         if matches!(kind, Kind::Gonioreflectometer(_)) && sensor.spectrum {
             let message = "`spectrum` of a gonioreflectometer, whose table has every wavelength; expected none";
-            return Err(self.wrong(&sensor.name.span(), message));
+            return wrong_key("spectrum", message);
         }
         let target = sensor.target.map(|t| t.0);
         Ok(Instrument { name: sensor.name.get_ref().clone(), spectrum: sensor.spectrum, target, kind })
@@ -220,7 +224,8 @@ impl Builder<'_> {
         };
         let [m, n] = grid.points;
         if m == 0 || n == 0 || u64::from(m) * u64::from(n) > MOST_POINTS {
-            return Err(self.wrong(span, format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them")));
+            let message = format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them");
+            return Err(self.wrong_key(span, &["grid", "points"], message));
         }
         self.ends(grid.isolux.as_deref(), ["png", "svg"], span)?;
         let counts = [m as usize, n as usize];

@@ -32,6 +32,7 @@ use super::scene::{Part, Scene};
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
 use crate::luminaire::Luminaire;
+use crate::mistake;
 use crate::photometry::luminous::Efficiency;
 use crate::spectrum::Spectrum;
 
@@ -160,6 +161,17 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn wrong(&self, span: &Range<usize>, message: impl ToString) -> Error {
         Error::at(self.text, span, message.to_string())
+    }
+
+    /// The same of the value of a key in the table that begins at `table`, or that holds a value there.
+    fn wrong_key(&self, table: &Range<usize>, keys: &[&str], message: impl ToString) -> Error {
+        self.wrong(&mistake::place(self.text, table, keys), message)
+    }
+
+    /// Both or none of two keys in the table at `at`, where one is needed.
+    fn not_one(&self, at: &Range<usize>, both: bool, [a, b]: [&str; 2]) -> Error {
+        let found = if both { format!("both `{a}` and `{b}`") } else { format!("neither `{a}` nor `{b}`") };
+        self.wrong(at, format!("{found}; expected one of them"))
     }
 }
 
@@ -369,17 +381,16 @@ impl Builder<'_> {
         Ok((bands.and_lines(&lines), error))
     }
 
-    /// The values of a spectrum in the bands. Beyond its table a reflectance (`edge`) goes on as it ends, an emission is 0.
+    /// The values of a spectrum in the bands.
     fn values(
         &self,
-        source: &SpectrumSource,
+        source: &toml::Spanned<SpectrumSource>,
         bands: &Bands,
-        edge: colour::Edge,
-        at: &Range<usize>,
+        role: &colour::Role,
     ) -> Result<Vec<f64>, Error> {
-        colour::Colour::of(self, source, edge, at)?.values(bands).map_err(|nm| {
+        colour::Colour::of(self, source, role)?.values(bands).map_err(|nm| {
             self.wrong(
-                at,
+                &source.span(),
                 format!("a line at {nm} nm for which there is no band; expected the lines of the scene's sources"),
             )
         })

@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use toml::Spanned;
 
 use super::analysis::is_flat;
-use super::colour::{Colour, Edge};
+use super::colour::Colour;
 use super::material::Named;
 use super::{Builder, Incomplete, Quantities};
 use crate::brdf::lambert::Lambert;
@@ -270,7 +270,7 @@ impl Builder<'_> {
                 "`lamp` beside another distribution or amount; expected at most a `flux` and a `spectrum`",
             ));
         }
-        let colour = e.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, &at))?;
+        let colour = Colour::of_light(self, e.spectrum.as_ref())?;
         let middle = face.sample_area([0.5; 3]);
         let described = Lamp {
             file: lamp.file.clone(),
@@ -298,7 +298,7 @@ impl Builder<'_> {
         if !(e.cosine_power >= 0.0 && e.cosine_power.is_finite()) {
             return Err(self.wrong(at, format!("a `cosine_power` of {}; expected 0 or more", e.cosine_power)));
         }
-        let colour = e.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, at))?;
+        let colour = Colour::of_light(self, e.spectrum.as_ref())?;
         let shape = Emission::new(Vec::new(), e.cosine_power, e.two_sided);
         let given = [
             e.radiance.map(|r| (r.value, r.kind)),

@@ -47,7 +47,8 @@ pub struct Description {
     pub render: Render,
     /// Spectra that the scene names.
     #[serde(default)]
-    pub spectra: BTreeMap<String, SpectrumSource>,
+    #[schemars(with = "BTreeMap<String, SpectrumSource>")]
+    pub spectra: BTreeMap<String, Spanned<SpectrumSource>>,
     /// Materials.
     #[serde(default)]
     pub material: Vec<Material>,
@@ -346,7 +347,9 @@ illuminance = { at = [1, 0.5, 0] }
         let message = refused("\"800 lm\"", "\"800 cd\"");
         assert!(message.starts_with("15:36: found `800 cd`; expected a flux"), "{message}");
         let message = refused("\"800 lm\"", "800");
-        assert!(message.starts_with("15:36: ") && message.contains("string"), "{message}");
+        assert_eq!(message, "15:36: found `800` without a unit; expected a flux as a text such as \"800 lm\"");
+        let message = refused("\"800 lm\"", "{ lm = 800 }");
+        assert_eq!(message, "15:36: found a table; expected a flux as a text such as \"800 lm\"");
         let message = refused("[0, 1, 0]", "[0, 1]");
         assert!(message.starts_with("13:"), "{message}");
         let message = refused("[[400, 0.1], [700, 0.5]]", "[[700, 0.1], [400, 0.5]]");
