@@ -223,6 +223,12 @@ impl Mesh {
         }
     }
 
+    /// Whether it has texture coordinates.
+    #[must_use]
+    pub fn has_uvs(&self) -> bool {
+        !self.uvs.is_empty()
+    }
+
     /// Texture coordinates at the weights `uv` of a triangle's second and third corner; those weights where the mesh has none.
     #[must_use]
     pub fn uv(&self, triangle: u32, uv: DVec2) -> DVec2 {

@@ -355,14 +355,18 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
             let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
             let _ = writeln!(
                 out,
-                "{:width$}  {} × {} points, {} to {} {}, uniformity U0 {}",
+                "{:width$}  {} × {} points, {} to {} {}, {}",
                 "",
                 p.counts[0],
                 p.counts[1],
                 significant(low, 4),
                 significant(high, 4),
                 r.unit,
-                significant(low / r.figure.value, 3)
+                if r.figure.value == 0.0 {
+                    "no uniformity: all is dark".to_owned()
+                } else {
+                    format!("uniformity U0 {}", significant(low / r.figure.value, 3))
+                }
             );
         }
         if let Some(m) = &r.intensities {

@@ -470,8 +470,8 @@ fn skies_and_the_sun_are_read() {
             "sun = { date = 2024-03-20, latitude = \"0 deg\", longitude = \"0 deg\", irradiance = \"1 lx\" }",
             "its offset",
         ),
-        ("sky = { type = 17, zenith = \"1 cd/m2\" }", "a type of sky"),
-        ("sky = { type = 3 }", "both or neither"),
+        ("sky = { type = 17, zenith = \"1 cd/m2\" }", ":2:16: a type of sky of 17"),
+        ("sky = { type = 3 }", "neither `zenith` nor `horizontal`; expected one of them"),
     ] {
         let text = format!("[[light]]\n{light}\n[[sensor]]\nname = \"up\"\nilluminance = {{ at = [0, 0, 0] }}\n");
         let path = scene(&folder, &text);

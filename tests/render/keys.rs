@@ -149,7 +149,7 @@ fn a_production_light_has_all_its_controls() {
     let bad = "[[light]]\nbarzel = { at = [0, 0, 2], aim = [0, 0, 0], up = [0, 1, 0], intensity = \"100 cd\", WHAT }\n";
     for (what, message) in [
         ("falloff = { exponent = 11 }", "an exponent of the falloff of 11; expected 0 to 10"),
-        ("flux = \"1 lm\"", "both or neither"),
+        ("flux = \"1 lm\"", "both `flux` and `intensity`; expected one of them"),
         ("slide = { file = \"none.png\", half = [1, 1] }", "none.png"),
         ("beam = 3", ":2:83: unknown field `beam`"),
     ] {

@@ -134,7 +134,7 @@ fn scenes_and_files_that_do_not_fit_are_told() {
     std::fs::write(&wrong, "[render]\nmeter_samples = 0\n").expect("written");
     let mut render = photopic();
     render.arg("render").arg(&path).arg("--settings").arg(&wrong);
-    render.assert().code(2).stderr(contains("wrong.toml:1:1: `meter_samples` is 0; expected at least 1"));
+    render.assert().code(2).stderr(contains("wrong.toml:2:17: found 0 samples; expected 1 or more"));
     let gonio = "[[sensor]]\nname = \"lamp\"\ngoniophotometer = { c_step = \"30 deg\", gamma_step = \"15 deg\" }\n";
     let path = scene(&folder, &(HOLLOW.split("[[sensor]]").next().expect("the shapes").to_owned() + gonio));
     let mut command = photopic();

@@ -164,6 +164,15 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
         let finding = Finding::warning("R009", message);
         finding.at(Location::default().in_file(path)).hint("a reflectance below 1, or an opening")
     });
+    let empty = built.instruments.iter().filter_map(|i| match &i.kind {
+        Kind::Gonioreflectometer(g) if !g.has_sample(&built.scene) => {
+            let message =
+                format!("sensor `{}`: no surface is under the spot, and nothing is reflected from there", i.name);
+            let finding = Finding::warning("R011", message).at(Location::default().in_file(path));
+            Some(finding.hint("`at` on the sample, `normal` to its outside"))
+        }
+        _ => None,
+    });
     let faults = (readings.iter().filter(|r| r.faults.count() > 0)).map(|r| {
         let f = &r.faults;
         let message = format!(
@@ -195,7 +204,7 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
             .at(Location::default().in_file(path))
             .hint("leave out `denoise`, or take more samples")
     });
-    incomplete.chain(dark).chain(preview).chain(endless).chain(missed).chain(faults).chain(filtered).collect()
+    incomplete.chain(dark).chain(preview).chain(endless).chain(empty).chain(missed).chain(faults).chain(filtered).collect()
 }
 
 /// The lights of which polished surfaces throw what no path meets, and the sensors that miss it.

@@ -14,8 +14,10 @@ use crate::render::sampler::Points;
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
+    #[serde(default, deserialize_with = "description::samples")]
     samples: Option<u64>,
     adaptive: Option<bool>,
+    #[serde(default, deserialize_with = "description::samples")]
     meter_samples: Option<u64>,
     solver: Option<Solver>,
     max_edges: Option<Edges>,
@@ -29,7 +31,9 @@ pub(super) struct Settings {
     polarisation: Option<bool>,
     sampler: Option<Points>,
     wavelengths_per_path: Option<Carried>,
+    #[serde(default, deserialize_with = "description::wavelength_step")]
     wavelength_step_nm: Option<f64>,
+    #[serde(default, deserialize_with = "description::wavelength_tolerance")]
     wavelength_tolerance: Option<f64>,
     model: Option<Model>,
     /// The file, for those who join the parts of a render.
@@ -54,7 +58,7 @@ enum Any {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    render: toml::Spanned<Settings>,
+    render: Settings,
 }
 
 impl Settings {
@@ -76,17 +80,7 @@ impl Settings {
         }
         let at = |m: Mistake| Failure::Message(format!("{place}:{m}"));
         let file: File = mistake::parse(&text).map_err(at)?;
-        let span = file.render.span();
-        let settings = Self { text, ..file.render.into_inner() };
-        let wrong = |message: &str| Err(at(Mistake::at(&settings.text, &span, message)));
-        let samples = [("samples", settings.samples), ("meter_samples", settings.meter_samples)];
-        if let Some((key, _)) = samples.iter().find(|(_, samples)| *samples == Some(0)) {
-            return wrong(&format!("`{key}` is 0; expected at least 1"));
-        }
-        if settings.wavelength_tolerance.is_some_and(|t| t <= 0.0) {
-            return wrong("`wavelength_tolerance` is not positive; expected a relative error");
-        }
-        Ok(settings)
+        Ok(Self { text, ..file.render })
     }
 
     /// Puts them in place.

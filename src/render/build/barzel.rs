@@ -48,7 +48,7 @@ impl Builder<'_> {
                 }
                 self.scaled(colour, flux.value / per_intensity, flux.kind, bands, quantities, at)?
             }
-            _ => return Err(self.wrong(at, "both or neither of `flux` and `intensity`; expected one of them")),
+            (flux, _) => return Err(self.not_one(at, flux.is_some(), ["flux", "intensity"])),
         };
         Ok(Arc::new(with(&intensity).map_err(wrong)?))
     }

@@ -1,8 +1,9 @@
 //! The scene's spectra as functions of wavelength, and the products of them that light can become.
 
-use std::ops::Range;
+use std::ops::RangeInclusive;
 
 use glam::DVec3;
+use toml::Spanned;
 
 use super::Builder;
 use crate::colorimetry::Observer;
@@ -24,6 +25,73 @@ pub(super) enum Edge {
     Constant,
 }
 
+/// What a spectrum is for.
+#[derive(Debug, Clone)]
+pub(super) struct Role {
+    /// Its key.
+    key: &'static str,
+    /// What it is beyond its table.
+    edge: Edge,
+    /// The values that it may have.
+    range: RangeInclusive<f64>,
+}
+
+impl Role {
+    /// Of light.
+    pub(super) const LIGHT: Self = Self::emission("spectrum");
+
+    /// Of light, under a key of its own.
+    pub(super) const fn emission(key: &'static str) -> Self {
+        Self { key, edge: Edge::Dark, range: 0.0..=f64::INFINITY }
+    }
+
+    /// A factor on light, such as a reflectance.
+    pub(super) const fn factor(key: &'static str) -> Self {
+        Self { key, edge: Edge::Constant, range: 0.0..=1.0 }
+    }
+
+    /// A share of light that is absorbed, none beyond its table.
+    pub(super) const fn absorption(key: &'static str) -> Self {
+        Self { key, edge: Edge::Dark, range: 0.0..=1.0 }
+    }
+
+    /// A refractive index.
+    pub(super) const fn index(key: &'static str) -> Self {
+        Self { key, edge: Edge::Constant, range: 1.0..=1e3 }
+    }
+
+    /// The same with its last values beyond its table.
+    pub(super) fn going_on(self) -> Self {
+        Self { edge: Edge::Constant, ..self }
+    }
+
+    /// What is wrong with a spectrum for this, in the numbers that were written: of a table its points within the wavelengths that are carried,
+    /// and where it enters and leaves them.
+    fn fault(&self, colour: &Colour) -> Option<String> {
+        let (low, high) = RANGE_NM;
+        let wrong = |(nm, value): &(f64, f64)| (low..=high).contains(nm) && !self.range.contains(value);
+        let points = |nm: &[f64], values: &[f64]| {
+            let ends = [(low, colour.at(low)), (high, colour.at(high))];
+            nm.iter().copied().zip(values.iter().copied()).chain(ends).find(wrong)
+        };
+        let found = match colour {
+            Colour::Constant(value) if self.range.contains(value) => return None,
+            Colour::Constant(value) => format!("{value}"),
+            Colour::Table(table, _) => {
+                let (nm, value) = points(table.wavelengths_nm(), table.values())?;
+                format!("{value} at {nm} nm")
+            }
+            Colour::Lines(lines) => {
+                let (nm, value) = points(lines.wavelengths_nm(), lines.values())?;
+                format!("{value} at {nm} nm")
+            }
+        };
+        let (low, high) = (self.range.start(), self.range.end());
+        let expected = if high.is_finite() { format!("from {low} to {high}") } else { format!("of {low} or more") };
+        Some(format!("`{}` is {found}; expected a number or spectrum {expected}", self.key))
+    }
+}
+
 /// A spectrum of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Colour {
@@ -34,19 +102,32 @@ pub(super) enum Colour {
 
 impl Colour {
     /// Looks a spectrum up: by value, by name in the scene or among the known sources, or in a file.
-    pub(super) fn of(b: &Builder<'_>, source: &SpectrumSource, edge: Edge, at: &Range<usize>) -> Result<Self, Error> {
-        let spectrum = match source {
+    pub(super) fn of(b: &Builder<'_>, source: &Spanned<SpectrumSource>, role: &Role) -> Result<Self, Error> {
+        let colour = Self::found(b, source, role.edge)?;
+        role.fault(&colour).map_or(Ok(colour), |message| Err(b.wrong(&source.span(), message)))
+    }
+
+    /// Of light that may have no spectrum of its own: then the same at every wavelength.
+    pub(super) fn of_light(b: &Builder<'_>, source: Option<&Spanned<SpectrumSource>>) -> Result<Self, Error> {
+        source.map_or(Ok(Self::Constant(1.0)), |s| Self::of(b, s, &Role::LIGHT))
+    }
+
+    fn found(b: &Builder<'_>, source: &Spanned<SpectrumSource>, edge: Edge) -> Result<Self, Error> {
+        let at = &source.span();
+        let spectrum = match source.get_ref() {
             SpectrumSource::Constant(value) => return Ok(Self::Constant(*value)),
             SpectrumSource::Table(table) => {
                 let (nm, values): (Vec<f64>, Vec<f64>) = table.iter().map(|[nm, v]| (*nm, *v)).unzip();
                 return Ok(Self::Table(Weighting::table(nm, values), edge));
             }
             SpectrumSource::Named(name) => match b.description.spectra.get(name) {
-                Some(SpectrumSource::Named(other)) if b.description.spectra.contains_key(other) => {
-                    let message = format!("`{name}` is another name for `{other}`; expected the spectrum itself");
-                    return Err(b.wrong(at, message));
-                }
-                Some(found) => return Self::of(b, found, edge, at),
+                Some(found) => match found.get_ref() {
+                    SpectrumSource::Named(other) if b.description.spectra.contains_key(other) => {
+                        let message = format!("`{name}` is another name for `{other}`; expected the spectrum itself");
+                        return Err(b.wrong(&found.span(), message));
+                    }
+                    _ => return Self::found(b, found, edge),
+                },
                 None => named::source(name, SecondRadiation::default()).map(|s| s.spectrum).map_err(|e| {
                     let own: Vec<&str> = b.description.spectra.keys().map(String::as_str).collect();
                     let own = if own.is_empty() { "none".to_owned() } else { own.join(", ") };
@@ -119,14 +200,10 @@ impl Colours {
                 emissions.extend(super::picture::emissions(b, file, light.spectrum.as_ref(), &at)?);
                 continue;
             }
-            emissions.push(
-                light.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?,
-            );
+            emissions.push(Colour::of_light(b, light.spectrum.as_ref())?);
         }
         for emission in d.shape.iter().filter_map(|s| s.emission.as_ref()) {
-            let source = &emission.get_ref().spectrum;
-            let at = emission.span();
-            emissions.push(source.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(b, s, Edge::Dark, &at))?);
+            emissions.push(Colour::of_light(b, emission.get_ref().spectrum.as_ref())?);
         }
         let mut reflectances = super::material::colours(b)?;
         let slides =

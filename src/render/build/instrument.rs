@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Builder;
+use super::light::degrees;
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
 use crate::geometry::lens::Distortion;
@@ -125,7 +126,9 @@ impl Builder<'_> {
             let axis = DVec3::from_array(m.look_at) - DVec3::from_array(m.at);
             let half = 0.5 * m.acceptance.map_or(ACCEPTANCE_DEG.to_radians(), |a| a.0);
             if !(half > 0.0 && half <= std::f64::consts::FRAC_PI_2) {
-                return Err(self.wrong(&l.span(), "an `acceptance` that is not above 0 and at most 180 deg"));
+                let found = degrees(2.0 * half);
+                let message = format!("`acceptance` is {found} deg; expected above 0 to 180 deg");
+                return Err(self.wrong_key(&l.span(), &["acceptance"], message));
             }
             kinds.push(meter(m.at, self.unit(axis.to_array(), &l.span())?, Response::Cone { sin: half.sin() }));
         }
@@ -160,17 +163,18 @@ impl Builder<'_> {
             );
             return Err(self.wrong(&sensor.name.span(), message));
         };
-        if sensor.target.is_some_and(|t| t.0.is_nan() || t.0 <= 0.0) {
-            return Err(self.wrong(&sensor.name.span(), "a `target` that is not above 0"));
+        let wrong_key = |key, message: &str| Err(self.wrong_key(&sensor.name.span(), &[key], message));
+        if let Some(t) = sensor.target.filter(|t| t.0.is_nan() || t.0 <= 0.0) {
+            return wrong_key("target", &format!("`target` is {} %; expected above 0 %", 100.0 * t.0));
         }
         let fixed = matches!(kind, Kind::Goniophotometer(_) | Kind::Gonioreflectometer(_));
         if fixed && sensor.target.is_some() {
             let message = "a `target` of an instrument that takes a fixed number of packets; expected `meter_samples`";
-            return Err(self.wrong(&sensor.name.span(), message));
+            return wrong_key("target", message);
         }
         if matches!(kind, Kind::Gonioreflectometer(_)) && sensor.spectrum {
             let message = "`spectrum` of a gonioreflectometer, whose table has every wavelength; expected none";
-            return Err(self.wrong(&sensor.name.span(), message));
+            return wrong_key("spectrum", message);
         }
         let target = sensor.target.map(|t| t.0);
         Ok(Instrument { name: sensor.name.get_ref().clone(), spectrum: sensor.spectrum, target, kind })
@@ -220,7 +224,8 @@ impl Builder<'_> {
         };
         let [m, n] = grid.points;
         if m == 0 || n == 0 || u64::from(m) * u64::from(n) > MOST_POINTS {
-            return Err(self.wrong(span, format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them")));
+            let message = format!("a grid of {m} × {n} points; expected 1 to {MOST_POINTS} of them");
+            return Err(self.wrong_key(span, &["grid", "points"], message));
         }
         self.ends(grid.isolux.as_deref(), ["png", "svg"], span)?;
         let counts = [m as usize, n as usize];
@@ -265,6 +270,42 @@ impl Builder<'_> {
                 format!("no rectangle, sphere or cylinder is called `{}`; expected the name of one", on.get_ref());
             self.wrong(&on.span(), message)
         })
+    }
+
+    /// No meter stands on a light without extent, which is infinite there.
+    pub(super) fn off_lights(&self, instruments: &[Instrument], dark_lights: &[String]) -> Result<(), Error> {
+        let points = self.description.light.iter().enumerate().filter_map(|(number, light)| {
+            let point = light.point.as_ref().map(|l| l.get_ref().at);
+            let spot = || light.spot.as_ref().map(|l| l.get_ref().at);
+            let lamp = || light.lamp.as_ref().filter(|l| !l.get_ref().opening).map(|l| l.get_ref().at);
+            let at = DVec3::from_array(point.or_else(spot).or_else(lamp)?);
+            let name = super::light::name(light, number);
+            (!dark_lights.contains(&name)).then_some((at, name))
+        });
+        let points: Vec<(DVec3, String)> = points.collect();
+        for (sensor, instrument) in self.description.sensor.iter().zip(instruments) {
+            let (one, many) = match &instrument.kind {
+                Kind::Meter(meter) => (Some(meter), &[][..]),
+                Kind::Grid { meters, .. } => (None, meters.as_slice()),
+                _ => continue,
+            };
+            let places = one.into_iter().chain(many).filter_map(|meter| match &meter.place {
+                Place::Point(point) => Some(point.position),
+                Place::Area(_) | Place::Around => None,
+            });
+            for place in places {
+                // 1/r² is beyond all numbers nearer than that.
+                let on = points.iter().find(|(at, _)| (1.0 / at.distance(place) / at.distance(place)).is_infinite());
+                if let Some((_, name)) = on {
+                    let message = format!(
+                        "sensor `{}` stands on light `{name}`, whose light is infinite there; expected a place off it",
+                        instrument.name
+                    );
+                    return Err(self.wrong(&sensor.name.span(), message));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Instruments around everything need lights that they can be around.
@@ -356,6 +397,11 @@ impl Builder<'_> {
             return Err(
                 self.wrong(span, "`distortion`, `aperture_radius` and `focus` belong to the perspective projection")
             );
+        }
+        if c.projection == Layout::Equirectangular && c.field_of_view.is_some() {
+            let message =
+                "`field_of_view` of a camera that sees all directions; expected it of a perspective or a fisheye";
+            return Err(self.wrong_key(span, &["field_of_view"], message));
         }
         let up = DVec3::from_array(c.up.unwrap_or([0.0, 0.0, 1.0]));
         let (at, target) = (DVec3::from_array(c.at), DVec3::from_array(c.look_at));

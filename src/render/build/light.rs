@@ -1,11 +1,12 @@
 //! Lights that are no surfaces.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::colour::{Colour, Edge};
+use super::colour::Colour;
 use super::picture::Of;
 use super::{Builder, Quantities};
 use crate::luminaire::placement::{Orientation, Placement};
@@ -15,7 +16,7 @@ use crate::render::description::Error;
 use crate::render::description::light::{
     Environment as Surroundings, Lamp, Light as Described, Projection as Layout, Sun as DescribedSun,
 };
-use crate::render::description::quantity::Kind;
+use crate::render::description::quantity::{Angle, Kind};
 use crate::render::light::Light;
 use crate::render::light::bounding::BoundingSphere;
 use crate::render::light::distant::Distant;
@@ -26,6 +27,11 @@ use crate::render::light::projection::Projection;
 use crate::render::light::sky::{Sky, SkyType};
 use crate::render::light::spot::{Profile, Spot};
 use crate::render::light::sun::{Air, Moment, SunPosition};
+
+/// The name of a light in reports.
+pub(super) fn name(light: &Described, number: usize) -> String {
+    light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone())
+}
 
 /// The place of a light's kind in the text.
 pub(super) fn span(light: &Described) -> Range<usize> {
@@ -41,6 +47,13 @@ pub(super) fn span(light: &Described) -> Range<usize> {
         light.name.as_ref().map(toml::Spanned::span),
     ];
     kinds.into_iter().flatten().next().unwrap_or(0..0)
+}
+
+/// An angle in degrees, without the rounding of the way through radians.
+pub(super) fn degrees(radians: f64) -> f64 {
+    let degrees = radians.to_degrees();
+    let even = (1e9 * degrees).round() / 1e9;
+    if (degrees - even).abs() <= 4.0 * f64::EPSILON * degrees.abs() { even } else { degrees }
 }
 
 /// The two quantities that a light may state, one of which it must.
@@ -59,8 +72,7 @@ impl Builder<'_> {
         sphere: BoundingSphere,
     ) -> Result<Arc<dyn Light>, Error> {
         let at = span(light);
-        let colour =
-            light.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, &at))?;
+        let colour = Colour::of_light(self, light.spectrum.as_ref())?;
         let kinds = [
             light.point.is_some(),
             light.spot.is_some(),
@@ -98,6 +110,10 @@ impl Builder<'_> {
         if let Some(spot) = &light.spot {
             let s = spot.get_ref();
             let (position, aim) = (DVec3::from_array(s.at), DVec3::from_array(s.aim));
+            if let Some(Angle(half)) = s.half_angle.filter(|half| !(half.0 > 1e-150 && half.0 <= PI)) {
+                let message = format!("`half_angle` is {} deg; expected above 0 to 180 deg", degrees(half));
+                return Err(self.wrong_key(&at, &["half_angle"], message));
+            }
             let profile = s.half_angle.map_or(Profile::Cosine, |a| Profile::Cone { half_angle_rad: a.0 });
             return Ok(
                 match self.amount(s.flux.map(|f| (f.value, f.kind)), s.intensity.map(|i| (i.value, i.kind)), &at)? {
@@ -128,7 +144,7 @@ impl Builder<'_> {
         }
         if let Some(sky) = &light.sky {
             let s = sky.get_ref();
-            let kind = SkyType::new(s.r#type).map_err(wrong)?;
+            let kind = SkyType::new(s.r#type).map_err(|e| self.wrong_key(&at, &["type"], e))?;
             let sun = DVec3::from_array(s.sun.unwrap_or([0.0, 0.0, 1.0]));
             return Ok(Arc::new(match (s.zenith, s.horizontal) {
                 (Some(l), None) => {
@@ -139,12 +155,12 @@ impl Builder<'_> {
                     let irradiance = self.scaled(&colour, e.value, e.kind, bands, quantities, &at)?;
                     Sky::from_horizontal(kind, DVec3::Z, sun, &irradiance, sphere).map_err(wrong)?
                 }
-                _ => return Err(self.wrong(&at, "both or neither of `zenith` and `horizontal`; expected one of them")),
+                (zenith, _) => return Err(self.not_one(&at, zenith.is_some(), ["zenith", "horizontal"])),
             }));
         }
         if let Some(sun) = &light.sun {
             let s = sun.get_ref();
-            let position = self.sun(s)?;
+            let position = self.sun(s, &at)?;
             let irradiance = self.scaled(&colour, s.irradiance.value, s.irradiance.kind, bands, quantities, &at)?;
             return Ok(Arc::new(position.light(&irradiance, sphere).map_err(wrong)?));
         }
@@ -200,8 +216,8 @@ impl Builder<'_> {
             Layout::EquisolidFisheye => Projection::Equisolid { half_field_rad },
         };
         if e.field_of_view.is_some() && matches!(e.projection, Layout::Equirectangular | Layout::MirrorBall) {
-            return Err(self
-                .wrong(at, "a `field_of_view` of a picture that shows all directions; expected it only of a fisheye"));
+            let message = "a `field_of_view` of a picture that shows all directions; expected it only of a fisheye";
+            return Err(self.wrong_key(at, &["field_of_view"], message));
         }
         let look = DVec3::from_array(e.look.unwrap_or([1.0, 0.0, 0.0]));
         let up = DVec3::from_array(e.up.unwrap_or([0.0, 0.0, 1.0]));
@@ -221,7 +237,7 @@ impl Builder<'_> {
     }
 
     /// Where the sun stands, its direction as refracted by standard air.
-    fn sun(&self, sun: &DescribedSun) -> Result<SunPosition, Error> {
+    fn sun(&self, sun: &DescribedSun, at: &Range<usize>) -> Result<SunPosition, Error> {
         let span = sun.date.span();
         let found = sun.date.get_ref();
         let (Some(date), Some(time), Some(offset)) = (found.date, found.time, found.offset) else {
@@ -237,6 +253,13 @@ impl Builder<'_> {
         let hours = f64::from(time.hour) + (f64::from(time.minute) - f64::from(minutes)) / 60.0 + seconds / 3600.0;
         let moment = Moment::utc(i32::from(date.year), date.month.into(), date.day.into(), hours);
         let moment = moment.map_err(|e| self.wrong(&span, e))?;
+        for (key, angle, most) in [("latitude", sun.latitude, 90.0), ("longitude", sun.longitude, 360.0)] {
+            let found = degrees(angle.0);
+            if found.abs() > most {
+                let message = format!("`{key}` is {found} deg; expected -{most} to {most} deg");
+                return Err(self.wrong_key(at, &[key], message));
+            }
+        }
         let air = Some(Air { pressure_hpa: 1013.25, temperature_c: 15.0 });
         let position = SunPosition::new(moment, sun.latitude.0.to_degrees(), sun.longitude.0.to_degrees(), air);
         let position = position.map_err(|e| self.wrong(&span, e))?;
@@ -316,7 +339,7 @@ impl Builder<'_> {
         match (flux, intensity) {
             (Some((value, kind)), None) => Ok(Amount::Flux(value, kind)),
             (None, Some((value, kind))) => Ok(Amount::Intensity(value, kind)),
-            _ => Err(self.wrong(at, "both or neither of `flux` and `intensity`; expected one of them")),
+            (flux, _) => Err(self.not_one(at, flux.is_some(), ["flux", "intensity"])),
         }
     }
 

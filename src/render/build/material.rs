@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::colour::{Colour, Edge};
+use super::colour::{Colour, Edge, Role};
 use super::picture::Of;
 use super::{Builder, Quantities};
 use crate::brdf::Brdf;
@@ -34,6 +34,7 @@ use crate::render::material::rough_dielectric::RoughDielectric;
 use crate::render::material::textured::{Checkerboard, Picture, Textured};
 use crate::render::material::thin_slab::ThinSlab;
 use crate::spectrum::integrate::Weighting;
+use crate::units::significant;
 
 /// A material by name.
 pub(super) type Named = (String, Arc<dyn Material>);
@@ -68,7 +69,7 @@ impl Builder<'_> {
     fn material(&self, m: &Described, bands: &Bands, done: &[Named]) -> Result<Arc<dyn Material>, Error> {
         let mut kinds: Vec<Arc<dyn Material>> = Vec::new();
         if let Some(source) = &m.reflectance {
-            let values = self.values(source.get_ref(), bands, Edge::Constant, &source.span())?;
+            let values = self.values(source, bands, &Role::factor("reflectance"))?;
             let lambert = Lambert::new(values).map_err(|e| self.wrong(&source.span(), e))?;
             kinds.push(Arc::new(Opaque::new(Box::new(lambert), !m.one_sided)));
         }
@@ -87,17 +88,18 @@ impl Builder<'_> {
         }
         if let Some(parts) = &m.mixture {
             let part = |share: &crate::render::description::material::Share| {
-                let values = self.values(&share.share, bands, Edge::Constant, &parts.span())?;
+                let values = self.values(&share.share, bands, &Role::factor("share"))?;
                 Ok((values, self.named(done, &share.material)?))
             };
             let parts_built = parts.get_ref().iter().map(part).collect::<Result<Vec<_>, Error>>()?;
+            self.at_most_all(&parts_built, bands, &parts.span())?;
             kinds.push(Arc::new(Mixture::new(parts_built).map_err(|e| self.wrong(&parts.span(), e))?));
         }
         if let Some(dye) = &m.dye {
             let (d, span) = (dye.get_ref(), dye.span());
-            let of = |source, edge| self.values(source, bands, edge, &span);
-            let (reflectance, absorption) = (of(&d.reflectance, Edge::Constant)?, of(&d.absorption, Edge::Dark)?);
-            let emission = of(&d.emission, Edge::Dark)?;
+            let reflectance = self.values(&d.reflectance, bands, &Role::factor("reflectance"))?;
+            let absorption = self.values(&d.absorption, bands, &Role::absorption("absorption"))?;
+            let emission = self.values(&d.emission, bands, &Role::emission("emission"))?;
             let made = Fluorescent::dye(bands, &reflectance, &absorption, &emission, d.quantum_yield, !m.one_sided);
             kinds.push(Arc::new(made.map_err(|e| self.wrong(&span, e))?));
         }
@@ -110,6 +112,27 @@ impl Builder<'_> {
             return Err(self.wrong(&m.name.span(), message));
         };
         Ok(material)
+    }
+
+    /// Shares of a mixture sum to at most 1, in every band.
+    fn at_most_all(
+        &self,
+        parts: &[(Vec<f64>, Arc<dyn Material>)],
+        bands: &Bands,
+        at: &Range<usize>,
+    ) -> Result<(), Error> {
+        for (band, nm) in bands.wavelengths_nm().iter().enumerate() {
+            let sum: f64 = parts.iter().map(|(shares, _)| shares[band]).sum();
+            // As the mixture itself has it: shares such as 0.1 + 0.2 + 0.7 round.
+            if sum > 1.0 + 8.0 * f64::EPSILON {
+                let same = parts.iter().all(|(shares, _)| shares.iter().all(|s| *s == shares[0]));
+                let place = if same { String::new() } else { format!(" at {nm} nm") };
+                let sum = significant(sum, 6);
+                let message = format!("the shares sum to {sum}{place}; expected at most 1");
+                return Err(self.wrong(at, message));
+            }
+        }
+        Ok(())
     }
 
     /// The material of a name, among those that are there already.
@@ -173,7 +196,7 @@ impl Builder<'_> {
     fn dielectric(&self, glass: &Glass, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
         let inside = match (&glass.medium, &glass.index, &glass.sellmeier, glass.cauchy) {
             (Some(name), None, None, None) => self.medium(name, bands, at)?,
-            (None, Some(source), None, None) => self.values(source, bands, Edge::Constant, at)?,
+            (None, Some(source), None, None) => self.values(source, bands, &Role::index("index"))?,
             (None, None, Some(terms), None) if terms.b.len() == terms.c_um2.len() => by_formula(bands, |l2| {
                 let sum: f64 = terms.b.iter().zip(&terms.c_um2).map(|(b, c)| b * l2 / (l2 - c)).sum();
                 (1.0 + sum).sqrt()
@@ -184,8 +207,8 @@ impl Builder<'_> {
                 return Err(self.wrong(at, message));
             }
         };
-        let outside =
-            glass.outside.as_ref().map_or(Ok(vec![1.0; bands.len()]), |s| self.values(s, bands, Edge::Constant, at))?;
+        let of = |s| self.values(s, bands, &Role::index("outside"));
+        let outside = glass.outside.as_ref().map_or(Ok(vec![1.0; bands.len()]), of)?;
         Ok(match glass.alpha {
             None => Arc::new(Dielectric::new(&outside, &inside).map_err(|e| self.wrong(at, e))?),
             Some(alpha) => {
@@ -197,11 +220,11 @@ impl Builder<'_> {
     fn pane(&self, pane: &Pane, bands: &Bands, at: &Range<usize>) -> Result<Arc<dyn Material>, Error> {
         let index = match (&pane.medium, &pane.index) {
             (Some(name), None) => self.medium(name, bands, at)?,
-            (None, Some(source)) => self.values(source, bands, Edge::Constant, at)?,
-            _ => return Err(self.wrong(at, "both or neither of `medium` and `index`; expected one of them")),
+            (None, Some(source)) => self.values(source, bands, &Role::index("index"))?,
+            (medium, _) => return Err(self.not_one(at, medium.is_some(), ["medium", "index"])),
         };
-        let one = SpectrumSource::Constant(1.0);
-        let passed = self.values(pane.transmittance.as_ref().unwrap_or(&one), bands, Edge::Constant, at)?;
+        let of = |s| self.values(s, bands, &Role::factor("transmittance"));
+        let passed = pane.transmittance.as_ref().map_or(Ok(vec![1.0; bands.len()]), of)?;
         Ok(Arc::new(ThinSlab::new(&index, &passed).map_err(|e| self.wrong(at, e))?))
     }
 
@@ -218,8 +241,9 @@ impl Builder<'_> {
     }
 
     fn checkerboard(&self, fields: &Fields, bands: &Bands, at: &Range<usize>) -> Result<Checkerboard, Error> {
-        let of = |source| self.values(source, bands, Edge::Constant, at);
-        Checkerboard::new(of(&fields.even)?, of(&fields.odd)?, fields.fields).map_err(|e| self.wrong(at, e))
+        let even = self.values(&fields.even, bands, &Role::factor("even"))?;
+        let odd = self.values(&fields.odd, bands, &Role::factor("odd"))?;
+        Checkerboard::new(even, odd, fields.fields).map_err(|e| self.wrong(at, e))
     }
 }
 
@@ -231,17 +255,17 @@ fn by_formula(bands: &Bands, formula: impl Fn(f64) -> f64) -> Vec<f64> {
 /// How the materials depend on wavelength, as far as the choice of wavelengths goes.
 pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
     let (mut out, mut pictures) = (Vec::new(), Vec::new());
-    let mut add = |source: &SpectrumSource, at: &Range<usize>| {
-        out.push(Colour::of(b, source, Edge::Constant, at)?);
+    let mut add = |source: &Spanned<SpectrumSource>, role: Role| {
+        out.push(Colour::of(b, source, &role.going_on())?);
         Ok(())
     };
     for m in &b.description.material {
         if let Some(source) = &m.reflectance {
-            add(source.get_ref(), &source.span())?;
+            add(source, Role::factor("reflectance"))?;
         }
         if let Some(board) = &m.checkerboard {
-            add(&board.get_ref().even, &board.span())?;
-            add(&board.get_ref().odd, &board.span())?;
+            add(&board.get_ref().even, Role::factor("even"))?;
+            add(&board.get_ref().odd, Role::factor("odd"))?;
         }
         if let Some(texture) = &m.texture {
             pictures.extend(b.picture(&texture.get_ref().file, Of::Factors, &texture.span())?.typical());
@@ -249,14 +273,16 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
         if let Some(pane) = &m.pane
             && let Some(source) = &pane.get_ref().transmittance
         {
-            add(source, &pane.span())?;
+            add(source, Role::factor("transmittance"))?;
         }
         if let Some(parts) = &m.mixture {
-            parts.get_ref().iter().try_for_each(|p| add(&p.share, &parts.span()))?;
+            parts.get_ref().iter().try_for_each(|p| add(&p.share, Role::factor("share")))?;
         }
         if let Some(dye) = &m.dye {
             let d = dye.get_ref();
-            [&d.reflectance, &d.absorption, &d.emission].into_iter().try_for_each(|s| add(s, &dye.span()))?;
+            add(&d.reflectance, Role::factor("reflectance"))?;
+            add(&d.absorption, Role::absorption("absorption"))?;
+            add(&d.emission, Role::emission("emission"))?;
         }
     }
     out.append(&mut pictures);

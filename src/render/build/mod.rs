@@ -32,6 +32,7 @@ use super::scene::{Part, Scene};
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
 use crate::luminaire::Luminaire;
+use crate::mistake;
 use crate::photometry::luminous::Efficiency;
 use crate::spectrum::Spectrum;
 
@@ -163,6 +164,17 @@ impl Builder<'_> {
     fn wrong(&self, span: &Range<usize>, message: impl ToString) -> Error {
         Error::at(self.text, span, message.to_string())
     }
+
+    /// The same of the value of a key in the table that begins at `table`, or that holds a value there.
+    fn wrong_key(&self, table: &Range<usize>, keys: &[&str], message: impl ToString) -> Error {
+        self.wrong(&mistake::place(self.text, table, keys), message)
+    }
+
+    /// Both or none of two keys in the table at `at`, where one is needed.
+    fn not_one(&self, at: &Range<usize>, both: bool, [a, b]: [&str; 2]) -> Error {
+        let found = if both { format!("both `{a}` and `{b}`") } else { format!("neither `{a}` nor `{b}`") };
+        self.wrong(at, format!("{found}; expected one of them"))
+    }
 }
 
 /// The text of a scene and its files. Scenes that are built from it one after the other share the meshes that were read.
@@ -209,7 +221,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let sphere = around(&parts);
     let mut lights: Vec<(String, Arc<dyn Light>)> = Vec::new();
     for (number, light) in description.light.iter().enumerate() {
-        let name = light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone());
+        let name = light::name(light, number);
         lights.push((name, builder.light(light, number, &bands, &quantities, sphere)?));
     }
     let (mut dark_lights, mut out_of_reach) = (Vec::new(), Vec::new());
@@ -239,6 +251,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     }
     let scene = Scene::new(bands, parts, lights);
     let instruments = builder.instruments(&scene, &surfaces)?;
+    builder.off_lights(&instruments, &analysis.dark_lights)?;
     let radiosity = builder.radiosity(&scene, &surfaces, &instruments)?;
     let render = &description.render;
     let follow = match render.solver {
@@ -332,6 +345,7 @@ impl Builder<'_> {
         };
         unique(d.material.iter().map(|m| &m.name).collect(), "material")?;
         unique(d.shape.iter().filter_map(|s| s.name.as_ref()).collect(), "shape")?;
+        unique(d.light.iter().filter_map(|l| l.name.as_ref()).collect(), "light")?;
         unique(d.sensor.iter().map(|s| &s.name).collect(), "sensor")
     }
 
@@ -374,17 +388,16 @@ impl Builder<'_> {
         Ok((bands.and_lines(&lines), errors))
     }
 
-    /// The values of a spectrum in the bands. Beyond its table a reflectance (`edge`) goes on as it ends, an emission is 0.
+    /// The values of a spectrum in the bands.
     fn values(
         &self,
-        source: &SpectrumSource,
+        source: &toml::Spanned<SpectrumSource>,
         bands: &Bands,
-        edge: colour::Edge,
-        at: &Range<usize>,
+        role: &colour::Role,
     ) -> Result<Vec<f64>, Error> {
-        colour::Colour::of(self, source, edge, at)?.values(bands).map_err(|nm| {
+        colour::Colour::of(self, source, role)?.values(bands).map_err(|nm| {
             self.wrong(
-                at,
+                &source.span(),
                 format!("a line at {nm} nm for which there is no band; expected the lines of the scene's sources"),
             )
         })

@@ -20,7 +20,7 @@ use std::rc::Rc;
 use glam::{DMat3, DVec3};
 
 use super::Builder;
-use super::colour::{Colour, Edge};
+use super::colour::{Colour, Edge, Role};
 use crate::colorimetry::observer::Observer;
 use crate::colorimetry::rgb::{Space, same_xy};
 use crate::constants::SecondRadiation;
@@ -135,14 +135,14 @@ impl Channels {
 pub(super) fn emissions(
     b: &Builder<'_>,
     file: &str,
-    spectrum: Option<&SpectrumSource>,
+    spectrum: Option<&toml::Spanned<SpectrumSource>>,
     at: &Range<usize>,
 ) -> Result<Vec<Colour>, Error> {
     let picture = b.picture(file, Of::Light, at)?;
     if !picture.in_colours {
         return Ok(picture.typical());
     }
-    let white = spectrum.map_or_else(|| Ok(picture.white.colour()), |s| Colour::of(b, s, Edge::Dark, at))?;
+    let white = spectrum.map_or_else(|| Ok(picture.white.colour()), |s| Colour::of(b, s, &Role::LIGHT))?;
     if matches!(white, Colour::Lines(_)) {
         return Err(b.wrong(at, "a line spectrum of a picture in colours; expected a density"));
     }

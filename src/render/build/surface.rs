@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use toml::Spanned;
 
 use super::analysis::is_flat;
-use super::colour::{Colour, Edge};
+use super::colour::Colour;
 use super::material::Named;
 use super::{Builder, Incomplete, Quantities};
 use crate::brdf::lambert::Lambert;
@@ -145,7 +145,8 @@ impl Builder<'_> {
             out.push((s.span(), one(Cylinder::new(v(c.from), v(c.to), c.radius.0, c.closed))));
         }
         if let Some(m) = &shape.mesh {
-            out.push((m.span(), Ok(self.meshes(m.get_ref(), &m.span())?)));
+            let pattern = shape.material.as_ref().and_then(|name| Some((name, self.pattern(name.get_ref())?)));
+            out.push((m.span(), Ok(self.meshes(m.get_ref(), &m.span(), pattern)?)));
         }
         let mut kinds = out.into_iter();
         match (kinds.next(), kinds.next()) {
@@ -161,8 +162,20 @@ impl Builder<'_> {
         }
     }
 
-    /// The meshes of a file, in their places.
-    fn meshes(&self, m: &DescribedMesh, at: &Range<usize>) -> Result<Vec<Arc<dyn Shape>>, Error> {
+    /// What varies over the texture coordinates in a material.
+    fn pattern(&self, material: &str) -> Option<&'static str> {
+        let found = self.description.material.iter().find(|m| m.name.get_ref() == material)?;
+        let texture = found.texture.is_some().then_some("texture");
+        texture.or_else(|| found.checkerboard.is_some().then_some("checkerboard"))
+    }
+
+    /// The meshes of a file, in their places; the material's name and its pattern, where it has one.
+    fn meshes(
+        &self,
+        m: &DescribedMesh,
+        at: &Range<usize>,
+        pattern: Option<(&Spanned<String>, &str)>,
+    ) -> Result<Vec<Arc<dyn Shape>>, Error> {
         let mut out: Vec<Arc<dyn Shape>> = Vec::new();
         let base = self.transform(&m.transform, at)?;
         let copies = match &m.instances {
@@ -170,6 +183,14 @@ impl Builder<'_> {
             Some(all) => all.iter().map(|s| Ok(self.transform(s, at)? * base)).collect::<Result<_, Error>>()?,
         };
         for mesh in self.searched(m, at)? {
+            if let Some((name, pattern)) = pattern.filter(|_| !mesh.has_uvs()) {
+                let message = format!(
+                    "material `{}` has a {pattern}, and {} no texture coordinates; expected a mesh with them (`vt` of OBJ, `u` and `v` or `s` and `t` of PLY, TEXCOORD_0 of glTF)",
+                    name.get_ref(),
+                    m.file
+                );
+                return Err(self.wrong(&name.span(), message));
+            }
             for to_world in &copies {
                 let placed = PlacedMesh::new(Arc::clone(&mesh), *to_world);
                 let message = "a transform that cannot be undone; expected a scale other than 0";
@@ -249,7 +270,7 @@ impl Builder<'_> {
                 "`lamp` beside another distribution or amount; expected at most a `flux` and a `spectrum`",
             ));
         }
-        let colour = e.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, &at))?;
+        let colour = Colour::of_light(self, e.spectrum.as_ref())?;
         let middle = face.sample_area([0.5; 3]);
         let described = Lamp {
             file: lamp.file.clone(),
@@ -277,7 +298,7 @@ impl Builder<'_> {
         if !(e.cosine_power >= 0.0 && e.cosine_power.is_finite()) {
             return Err(self.wrong(at, format!("a `cosine_power` of {}; expected 0 or more", e.cosine_power)));
         }
-        let colour = e.spectrum.as_ref().map_or(Ok(Colour::Constant(1.0)), |s| Colour::of(self, s, Edge::Dark, at))?;
+        let colour = Colour::of_light(self, e.spectrum.as_ref())?;
         let shape = Emission::new(Vec::new(), e.cosine_power, e.two_sided);
         let given = [
             e.radiance.map(|r| (r.value, r.kind)),

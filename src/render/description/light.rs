@@ -18,7 +18,8 @@ pub struct Light {
     pub name: Option<Spanned<String>>,
     /// Its colour; without one the same at every wavelength.
     #[serde(default)]
-    pub spectrum: Option<SpectrumSource>,
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub spectrum: Option<Spanned<SpectrumSource>>,
     /// An isotropic point.
     #[serde(default)]
     #[schemars(with = "Option<Point>")]

@@ -74,7 +74,8 @@ pub struct Dielectric {
     pub medium: Option<String>,
     /// Its refractive index.
     #[serde(default)]
-    pub index: Option<SpectrumSource>,
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub index: Option<Spanned<SpectrumSource>>,
     /// Sellmeier's formula: n² = 1 + Σ b λ²/(λ² − c), λ in µm.
     #[serde(default)]
     pub sellmeier: Option<Sellmeier>,
@@ -83,7 +84,8 @@ pub struct Dielectric {
     pub cauchy: Option<[f64; 3]>,
     /// The index of what is outside; 1 without it.
     #[serde(default)]
-    pub outside: Option<SpectrumSource>,
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub outside: Option<Spanned<SpectrumSource>>,
     /// Roughness of its facets (GGX); polished without it.
     #[serde(default)]
     pub alpha: Option<f64>,
@@ -108,10 +110,12 @@ pub struct Pane {
     pub medium: Option<String>,
     /// Its refractive index.
     #[serde(default)]
-    pub index: Option<SpectrumSource>,
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub index: Option<Spanned<SpectrumSource>>,
     /// Internal transmittance along the normal; 1 without it.
     #[serde(default)]
-    pub transmittance: Option<SpectrumSource>,
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub transmittance: Option<Spanned<SpectrumSource>>,
 }
 
 /// A material's share of a mixture.
@@ -122,7 +126,8 @@ pub struct Share {
     #[schemars(with = "String")]
     pub material: Spanned<String>,
     /// Its share, 0 to 1; all of them at most 1.
-    pub share: SpectrumSource,
+    #[schemars(with = "SpectrumSource")]
+    pub share: Spanned<SpectrumSource>,
 }
 
 /// A fluorescent diffuser with one dye.
@@ -130,11 +135,14 @@ pub struct Share {
 #[serde(deny_unknown_fields)]
 pub struct Dye {
     /// Reflectance without the dye's light.
-    pub reflectance: SpectrumSource,
+    #[schemars(with = "SpectrumSource")]
+    pub reflectance: Spanned<SpectrumSource>,
     /// Share of the light that the dye absorbs.
-    pub absorption: SpectrumSource,
+    #[schemars(with = "SpectrumSource")]
+    pub absorption: Spanned<SpectrumSource>,
     /// Its emission spectrum, relative, in power per nm.
-    pub emission: SpectrumSource,
+    #[schemars(with = "SpectrumSource")]
+    pub emission: Spanned<SpectrumSource>,
     /// Photons emitted per photon absorbed, 0 to 1.
     pub quantum_yield: f64,
 }
@@ -144,9 +152,11 @@ pub struct Dye {
 #[serde(deny_unknown_fields)]
 pub struct Checkerboard {
     /// Factor of the field at the shape's origin, 0 to 1.
-    pub even: SpectrumSource,
+    #[schemars(with = "SpectrumSource")]
+    pub even: Spanned<SpectrumSource>,
     /// Factor of its neighbours, 0 to 1.
-    pub odd: SpectrumSource,
+    #[schemars(with = "SpectrumSource")]
+    pub odd: Spanned<SpectrumSource>,
     /// Fields along both texture coordinates.
     pub fields: [u32; 2],
 }

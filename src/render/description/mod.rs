@@ -47,7 +47,8 @@ pub struct Description {
     pub render: Render,
     /// Spectra that the scene names.
     #[serde(default)]
-    pub spectra: BTreeMap<String, SpectrumSource>,
+    #[schemars(with = "BTreeMap<String, SpectrumSource>")]
+    pub spectra: BTreeMap<String, Spanned<SpectrumSource>>,
     /// Materials.
     #[serde(default)]
     pub material: Vec<Material>,
@@ -68,7 +69,8 @@ pub struct Render {
     /// Which light is followed.
     pub solver: Solver,
     /// Samples of a pixel.
-    #[schemars(range(min = 1))]
+    #[schemars(with = "u64", range(min = 1))]
+    #[serde(deserialize_with = "samples")]
     pub samples: u64,
     /// Whether the samples of a picture go where it is noisy, so many a pixel on average; else every pixel gets as many.
     pub adaptive: bool,
@@ -85,7 +87,8 @@ pub struct Render {
     #[schemars(with = "bool")]
     pub denoise: Option<Spanned<bool>>,
     /// Samples of a meter, at most where a target is given.
-    #[schemars(range(min = 1))]
+    #[schemars(with = "u64", range(min = 1))]
+    #[serde(deserialize_with = "samples")]
     pub meter_samples: u64,
     /// Names all random numbers.
     pub seed: u64,
@@ -100,8 +103,12 @@ pub struct Render {
     /// Whether a path carries all wavelengths or one.
     pub wavelengths_per_path: Carried,
     /// Step between wavelengths, nm; without it the coarsest that keeps to `wavelength_tolerance`.
+    #[schemars(with = "Option<f64>", range(min = 1, max = 100))]
+    #[serde(deserialize_with = "wavelength_step")]
     pub wavelength_step_nm: Option<f64>,
     /// The greatest error of the sum over wavelengths, relative.
+    #[schemars(with = "f64")]
+    #[serde(deserialize_with = "wavelength_tolerance")]
     pub wavelength_tolerance: f64,
     /// The longest edge of a patch, of radiosity; without it as long as makes some thousand patches.
     #[schemars(with = "Option<Length>")]
@@ -122,6 +129,35 @@ pub(crate) fn roulette_from<'de, D: Deserializer<'de>, N: From<u32>>(deserialize
     let found = u32::deserialize(deserializer)?;
     let wrong = || D::Error::custom("a `roulette_from` of 0; expected the number of an edge, from 1");
     if found == 0 { Err(wrong()) } else { Ok(found.into()) }
+}
+
+/// A number of samples, from 1.
+///
+/// # Errors
+/// Another number.
+pub(crate) fn samples<'de, D: Deserializer<'de>, N: From<u64>>(deserializer: D) -> Result<N, D::Error> {
+    let found = u64::deserialize(deserializer)?;
+    if found == 0 { Err(D::Error::custom("found 0 samples; expected 1 or more")) } else { Ok(found.into()) }
+}
+
+/// A step between wavelengths, nm.
+///
+/// # Errors
+/// Another number.
+pub(crate) fn wavelength_step<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let found = f64::deserialize(deserializer)?;
+    let wrong = || D::Error::custom(format!("a `wavelength_step_nm` of {found}; expected 1 to 100"));
+    if (1.0..=100.0).contains(&found) { Ok(Some(found)) } else { Err(wrong()) }
+}
+
+/// A relative error.
+///
+/// # Errors
+/// Another number.
+pub(crate) fn wavelength_tolerance<'de, D: Deserializer<'de>, N: From<f64>>(deserializer: D) -> Result<N, D::Error> {
+    let found = f64::deserialize(deserializer)?;
+    let message = || format!("a `wavelength_tolerance` of {found}; expected a relative error above 0, such as 1e-3");
+    if found > 0.0 { Ok(found.into()) } else { Err(D::Error::custom(message())) }
 }
 
 /// A number of branches, 1 to 64.
@@ -297,7 +333,7 @@ illuminance = { at = [1, 0.5, 0] }
     fn a_scene_is_read() {
         let scene = Description::parse(SCENE).unwrap();
         assert_eq!((scene.shape.len(), scene.light.len(), scene.sensor.len()), (1, 1, 1));
-        assert_eq!(scene.spectra["wood"], SpectrumSource::Table(vec![[400.0, 0.1], [700.0, 0.5]]));
+        assert_eq!(*scene.spectra["wood"].get_ref(), SpectrumSource::Table(vec![[400.0, 0.1], [700.0, 0.5]]));
         assert_eq!((scene.render.samples, scene.render.seed), (16, 0));
         let point = scene.light[0].point.as_ref().unwrap().get_ref();
         assert_eq!(point.flux, Some(quantity::Flux { value: 800.0, kind: quantity::Kind::Luminous }));
@@ -311,7 +347,9 @@ illuminance = { at = [1, 0.5, 0] }
         let message = refused("\"800 lm\"", "\"800 cd\"");
         assert!(message.starts_with("15:36: found `800 cd`; expected a flux"), "{message}");
         let message = refused("\"800 lm\"", "800");
-        assert!(message.starts_with("15:36: ") && message.contains("string"), "{message}");
+        assert_eq!(message, "15:36: found `800` without a unit; expected a flux as a text such as \"800 lm\"");
+        let message = refused("\"800 lm\"", "{ lm = 800 }");
+        assert_eq!(message, "15:36: found a table; expected a flux as a text such as \"800 lm\"");
         let message = refused("[0, 1, 0]", "[0, 1]");
         assert!(message.starts_with("13:"), "{message}");
         let message = refused("[[400, 0.1], [700, 0.5]]", "[[700, 0.1], [400, 0.5]]");

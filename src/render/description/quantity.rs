@@ -1,10 +1,11 @@
 //! Quantities with their units, as texts of a scene: `"800 lm"`, `"4000 K"`, `"1 W/m2/sr/nm"`.
 
 use std::fmt;
+use std::marker::PhantomData;
 use std::str::FromStr;
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::de::{Deserialize, Deserializer, Visitor};
 
 /// A unit: its spellings, the factor to SI, and what it measures.
 struct Unit<T: 'static> {
@@ -50,12 +51,60 @@ fn parse<T: Copy>(text: &str, what: &str, units: &[Unit<T>]) -> Result<(f64, T),
     if value.is_finite() { Ok((value, found.kind)) } else { Err(refused()) }
 }
 
+/// Reads a quantity from its text. A number alone is the commonest mistake, and is told what it lacks.
+struct Text<T> {
+    what: &'static str,
+    example: &'static str,
+    of: PhantomData<T>,
+}
+
+impl<T> Text<T> {
+    fn without_unit<E: serde::de::Error>(&self, found: impl fmt::Display) -> Result<T, E> {
+        let Self { what, example, .. } = self;
+        Err(E::custom(format!("found `{found}` without a unit; expected {what} as a text such as \"{example}\"")))
+    }
+}
+
+impl<T: FromStr<Err = Error>> Visitor<'_> for Text<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} as a text such as \"{}\"", self.what, self.example)
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<T, E> {
+        text.parse().map_err(E::custom)
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, found: i64) -> Result<T, E> {
+        self.without_unit(found)
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, found: u64) -> Result<T, E> {
+        self.without_unit(found)
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, found: f64) -> Result<T, E> {
+        self.without_unit(found)
+    }
+}
+
+/// How a quantity is read: as [`Text`].
+macro_rules! read {
+    ($name:ident, $what:literal, $example:literal) => {
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_any(Text { what: $what, example: $example, of: PhantomData })
+            }
+        }
+    };
+}
+
 /// A quantity of one dimension in its SI unit.
 macro_rules! simple {
     ($(#[$doc:meta])* $name:ident, $what:literal, $example:literal, [$($spellings:expr => $factor:expr),+ $(,)?]) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Deserialize, JsonSchema)]
-        #[serde(try_from = "String")]
+        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, JsonSchema)]
         #[schemars(with = "String", extend("examples" = [$example]))]
         pub struct $name(pub f64);
 
@@ -67,13 +116,7 @@ macro_rules! simple {
             }
         }
 
-        impl TryFrom<String> for $name {
-            type Error = Error;
-
-            fn try_from(text: String) -> Result<Self, Error> {
-                text.parse()
-            }
-        }
+        read!($name, $what, $example);
     };
 }
 
@@ -109,8 +152,7 @@ pub enum Kind {
 macro_rules! light {
     ($(#[$doc:meta])* $name:ident, $what:literal, $example:literal, [$($spellings:expr => ($factor:expr, $kind:ident)),+ $(,)?]) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-        #[serde(try_from = "String")]
+        #[derive(Debug, Clone, Copy, PartialEq, JsonSchema)]
         #[schemars(with = "String", extend("examples" = [$example]))]
         pub struct $name {
             /// The amount.
@@ -132,13 +174,7 @@ macro_rules! light {
             }
         }
 
-        impl TryFrom<String> for $name {
-            type Error = Error;
-
-            fn try_from(text: String) -> Result<Self, Error> {
-                text.parse()
-            }
-        }
+        read!($name, $what, $example);
     };
 }
 

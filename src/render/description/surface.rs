@@ -72,7 +72,8 @@ pub struct Shape {
 pub struct Emission {
     /// Its colour; without one the same at every wavelength.
     #[serde(default)]
-    pub spectrum: Option<SpectrumSource>,
+    #[schemars(with = "Option<SpectrumSource>")]
+    pub spectrum: Option<Spanned<SpectrumSource>>,
     /// Radiance along the normal.
     #[serde(default)]
     pub radiance: Option<Radiance>,

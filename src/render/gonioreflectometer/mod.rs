@@ -31,6 +31,8 @@ use crate::math::sampling;
 /// Most cells for one direction of incidence, and most of those.
 const MOST_CELLS: usize = 20_000;
 const MOST_INCIDENT: usize = 1000;
+/// Rays across the spot, along both of its sides, that look for the sample.
+const PROBES: u32 = 12;
 
 /// The spot and the directions.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,6 +161,37 @@ impl Gonioreflectometer {
         self.incident_deg.len()
     }
 
+    /// Whether any surface is met by the beam, for any direction of incidence: of some hundred rays over the spot.
+    #[must_use]
+    pub fn has_sample(&self, scene: &Scene) -> bool {
+        self.incident_deg.iter().any(|&incident| {
+            let (towards_light, reach) = self.beam(scene, incident);
+            (0..PROBES * PROBES).any(|n| {
+                let [u, v] = [n / PROBES, n % PROBES].map(|i| (f64::from(i) + 0.5) / f64::from(PROBES));
+                let ray = self.ray([u, v], towards_light, reach);
+                scene.surfaces().closest(&ray, f64::INFINITY).is_some()
+            })
+        })
+    }
+
+    /// The way to the light of a direction of incidence, and from how far along it the beam starts: outside of everything.
+    fn beam(&self, scene: &Scene, incident_deg: [f64; 2]) -> (DVec3, f64) {
+        let towards_light = self.to_world * from_degrees(incident_deg[0], incident_deg[1]);
+        let bounds = scene.bounds();
+        let size = if bounds.is_finite() {
+            (bounds.max - self.centre).abs().max((bounds.min - self.centre).abs()).length()
+        } else {
+            0.0
+        };
+        (towards_light, 2.0 * (size + self.radius) / towards_light.dot(self.to_world.z_axis))
+    }
+
+    /// A ray of the beam, onto a place of the spot that two uniform numbers draw.
+    fn ray(&self, u: [f64; 2], towards_light: DVec3, reach: f64) -> Ray {
+        let spot = self.centre + self.to_world * (self.radius * sampling::disk(u)).extend(0.0);
+        Ray { origin: spot + reach * towards_light, direction: -towards_light }
+    }
+
     /// Step of θ_o, degrees.
     fn step(&self) -> f64 {
         90.0 / self.theta_deg.len() as f64
@@ -198,15 +231,7 @@ impl Gonioreflectometer {
     fn lobe(&self, scene: &Scene, settings: &Settings, number: u64, samples: u64, incident_deg: [f64; 2]) -> Lobe {
         let per_replicate = samples.div_ceil(REPLICATES as u64);
         let bands = scene.bands().len();
-        let towards_light = self.to_world * from_degrees(incident_deg[0], incident_deg[1]);
-        // The beam starts outside of everything.
-        let bounds = scene.bounds();
-        let size = if bounds.is_finite() {
-            (bounds.max - self.centre).abs().max((bounds.min - self.centre).abs()).length()
-        } else {
-            0.0
-        };
-        let reach = 2.0 * (size + self.radius) / towards_light.dot(self.to_world.z_axis);
+        let (towards_light, reach) = self.beam(scene, incident_deg);
         let parts: Vec<(Replicate, Replicate)> = (0..REPLICATES)
             .into_par_iter()
             .map(|replicate| {
@@ -219,8 +244,7 @@ impl Gonioreflectometer {
                 for index in 0..per_replicate {
                     sampler.start(index);
                     let [u, v, ..] = sampler.four();
-                    let spot = self.centre + self.to_world * (self.radius * sampling::disk([u, v])).extend(0.0);
-                    let ray = Ray { origin: spot + reach * towards_light, direction: -towards_light };
+                    let ray = self.ray([u, v], towards_light, reach);
                     leaving.flux.fill(0.0);
                     leaving.direction = None;
                     tracer.beam(ray, &mut sampler, &mut leaving);
