@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::colour::{Colour, Edge};
+use super::colour::{Colour, Dye, Edge};
 use super::picture::Of;
 use super::{Builder, Quantities};
 use crate::brdf::Brdf;
@@ -18,7 +18,7 @@ use crate::brdf::microfacet::{Distribution, Masking, Microfacet};
 use crate::brdf::specular::Specular;
 use crate::geometry::direction;
 use crate::render::audit::bias::{self, SingleScattering};
-use crate::render::bands::{Bands, RANGE_NM};
+use crate::render::bands::{Bands, RANGE_NM, Width};
 use crate::render::description::Error;
 use crate::render::description::material::{
     Checkerboard as Fields, Dielectric as Glass, Material as Described, Metal, Pane, Texture as DescribedTexture,
@@ -96,8 +96,25 @@ impl Builder<'_> {
         if let Some(dye) = &m.dye {
             let (d, span) = (dye.get_ref(), dye.span());
             let of = |source, edge| self.values(source, bands, edge, &span);
+            if let Colour::Lines(_) = Colour::of(self, &d.absorption, Edge::Dark, &span)? {
+                return Err(self.wrong(&span, "lines as a dye's `absorption`; expected its share at every wavelength"));
+            }
+            if !Colour::of(self, &d.emission, Edge::Dark, &span)?.is_density() {
+                let (low, high) = RANGE_NM;
+                let message =
+                    format!("an `emission` of nothing; expected a density above 0 between {low} and {high} nm");
+                return Err(self.wrong(&span, message));
+            }
             let (reflectance, absorption) = (of(&d.reflectance, Edge::Constant)?, of(&d.absorption, Edge::Dark)?);
             let emission = of(&d.emission, Edge::Dark)?;
+            let nodes = emission.iter().zip(bands.widths()).filter(|(_, width)| **width != Width::Line);
+            if let Some(step) = self.description.render.wavelength_step_nm
+                && nodes.into_iter().all(|(e, _)| *e == 0.0)
+            {
+                let message =
+                    format!("no wavelength in a dye's `emission`; expected a `wavelength_step_nm` below {step}");
+                return Err(self.wrong(&span, message));
+            }
             let made = Fluorescent::dye(bands, &reflectance, &absorption, &emission, d.quantum_yield, !m.one_sided);
             kinds.push(Arc::new(made.map_err(|e| self.wrong(&span, e))?));
         }
@@ -255,8 +272,7 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
             parts.get_ref().iter().try_for_each(|p| add(&p.share, &parts.span()))?;
         }
         if let Some(dye) = &m.dye {
-            let d = dye.get_ref();
-            [&d.reflectance, &d.absorption, &d.emission].into_iter().try_for_each(|s| add(s, &dye.span()))?;
+            add(&dye.get_ref().reflectance, &dye.span())?;
         }
     }
     out.append(&mut pictures);
@@ -275,6 +291,20 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
         }
     }
     Ok(out)
+}
+
+/// The dyes of surfaces.
+pub(super) fn dyes(b: &Builder<'_>) -> Result<Vec<Dye>, Error> {
+    let of_a_surface = |m: &&Described| {
+        b.description.shape.iter().filter_map(|s| s.material.as_ref()).any(|name| name.get_ref() == m.name.get_ref())
+    };
+    let dyes = b.description.material.iter().filter(of_a_surface).filter_map(|m| m.dye.as_ref());
+    dyes.map(|dye| {
+        let (d, at) = (dye.get_ref(), dye.span());
+        let [absorption, emission] = [&d.absorption, &d.emission].map(|s| Colour::of(b, s, Edge::Dark, &at));
+        Ok(Dye { absorption: absorption?, emission: emission? })
+    })
+    .collect()
 }
 
 /// A described BRDF's values for two pairs of directions, one near the mirror direction and one off it, and its mirror's, at 1 nm.

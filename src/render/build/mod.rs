@@ -12,6 +12,8 @@ mod picture;
 mod radiosity;
 mod reach;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -147,6 +149,9 @@ pub struct Incomplete {
     pub column: u64,
 }
 
+/// How often the tolerance of bands is halved before all are carried.
+const HALVINGS: i32 = 12;
+
 /// What the parts of the builder share.
 struct Builder<'a> {
     text: &'a str,
@@ -188,6 +193,18 @@ impl<'a> Origin<'a> {
     }
 }
 
+/// Surfaces and lights in the bands that they decided.
+struct Prepared {
+    bands: Bands,
+    wavelength_error: Option<f64>,
+    quantities: Quantities,
+    materials: Vec<material::Named>,
+    parts: Vec<Part>,
+    surfaces: Vec<Range<usize>>,
+    lights: Vec<reach::Numbered>,
+    left_out: reach::LeftOut,
+}
+
 /// Builds a scene from its text and what was read from it.
 ///
 /// # Errors
@@ -199,31 +216,11 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
 fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let (text, description) = (builder.text, builder.description);
     builder.check_names()?;
-    let colours = colour::Colours::new(builder)?;
-    let (bands, wavelength_error) = builder.bands(&colours)?;
-    let quantities = Quantities::new(&bands);
-    let materials = builder.materials(&bands)?;
-    let (mut parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
-    let sphere = around(&parts);
-    let mut lights: Vec<(String, Arc<dyn Light>)> = Vec::new();
-    for (number, light) in description.light.iter().enumerate() {
-        let name = light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone());
-        lights.push((name, builder.light(light, number, &bands, &quantities, sphere)?));
-    }
-    let (mut dark_lights, mut out_of_reach) = (Vec::new(), Vec::new());
-    if description.render.model == Model::Minimal {
-        let mut flux = vec![0.0; bands.len()];
-        lights.retain(|(name, light)| {
-            light.flux(&mut flux);
-            let shines = flux.iter().any(|f| *f != 0.0);
-            if !shines {
-                dark_lights.push(name.clone());
-            }
-            shines
-        });
-        out_of_reach = builder.out_of_reach(&mut parts, &surfaces, &mut lights);
-    }
-    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, [dark_lights, out_of_reach], bands.len());
+    let Prepared { bands, wavelength_error, quantities, materials, parts, surfaces, lights, left_out } =
+        builder.prepared()?;
+    let lights: Vec<(String, Arc<dyn Light>)> = lights.into_iter().map(|(_, name, light)| (name, light)).collect();
+    let left_out = [left_out.without_flux, left_out.out_of_reach];
+    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, left_out, bands.len());
     let (mut light_names, lights): (Vec<_>, Vec<_>) = lights.into_iter().unzip();
     let materials_of = description.shape.iter().zip(&surfaces).flat_map(|(shape, surfaces)| {
         let wanted = shape.material.as_ref().map(toml::Spanned::get_ref);
@@ -298,7 +295,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
 pub fn error_in_rgb(text: &str, description: &Description, files: &dyn Files) -> Result<Option<f64>, Error> {
     let meshes = &Meshes::default();
     let builder = Builder { text, description, files, meshes, pictures: RefCell::default() };
-    Ok(colour::Colours::new(&builder)?.error_in_rgb())
+    Ok(colour::Colours::new(&builder, &reach::LeftOut::default())?.error_in_rgb())
 }
 
 /// The sphere around all bounded surfaces, and around the origin where there are none.
@@ -332,6 +329,49 @@ impl Builder<'_> {
         unique(d.sensor.iter().map(|s| &s.name).collect(), "sensor")
     }
 
+    /// Surfaces and lights. Which lights are left out is known when they are built, and they are built in bands: where some are, and the rest
+    /// needs other bands, all is built once more.
+    fn prepared(&self) -> Result<Prepared, Error> {
+        let bands = |left_out: &_| self.bands(&colour::Colours::new(self, left_out)?);
+        let mut first = self.prepared_in(bands(&reach::LeftOut::default())?, None)?;
+        if self.description.render.model != Model::Minimal {
+            return Ok(first);
+        }
+        let Prepared { bands: carried, parts, surfaces, lights, .. } = &mut first;
+        first.left_out = self.leave_out(parts, surfaces, lights, carried.len());
+        if first.left_out.lights.is_empty() && first.left_out.shapes.is_empty() {
+            return Ok(first);
+        }
+        let (bands, wavelength_error) = bands(&first.left_out)?;
+        if bands == first.bands {
+            return Ok(Prepared { wavelength_error, ..first });
+        }
+        self.prepared_in((bands, wavelength_error), Some(first))
+    }
+
+    /// Surfaces and lights in the bands given, but for what was left out `before`.
+    fn prepared_in(
+        &self,
+        (bands, wavelength_error): (Bands, Option<f64>),
+        before: Option<Prepared>,
+    ) -> Result<Prepared, Error> {
+        let nothing = reach::LeftOut::default();
+        let left_out = before.as_ref().map_or(&nothing, |b| &b.left_out);
+        let quantities = Quantities::new(&bands);
+        let materials = self.materials(&bands)?;
+        let built = before.as_ref().map(|b| (&*b.parts, &*b.surfaces));
+        let (parts, surfaces) = self.parts(&materials, &bands, &quantities, left_out, built)?;
+        let sphere = around(&parts);
+        let mut lights = Vec::new();
+        let all = self.description.light.iter().enumerate();
+        for (number, light) in all.filter(|(number, _)| !left_out.lights.contains(number)) {
+            let name = light.name.as_ref().map_or_else(|| format!("light {}", number + 1), |n| n.get_ref().clone());
+            lights.push((number, name, self.light(light, number, &bands, &quantities, sphere)?));
+        }
+        let left_out = before.map_or(nothing, |b| b.left_out);
+        Ok(Prepared { bands, wavelength_error, quantities, materials, parts, surfaces, lights, left_out })
+    }
+
     /// The wavelengths to carry: as asked for, or as few as the scene's spectra allow, and the lines of its line sources.
     fn bands(&self, colours: &colour::Colours) -> Result<(Bands, Option<f64>), Error> {
         let render = &self.description.render;
@@ -360,14 +400,23 @@ impl Builder<'_> {
             None => {
                 let products = colours.products();
                 let functions: Vec<&dyn Fn(f64) -> f64> = products.iter().map(|p| p.as_ref() as _).collect();
-                let (bands, error) = Bands::choose(&functions, &weightings, render.wavelength_tolerance);
+                let wanted = render.wavelength_tolerance;
+                let chosen = |tolerance: f64| {
+                    let (bands, error) = Bands::choose(&functions, &weightings, tolerance);
+                    let error = error.max(colours.error_of_photons(&bands));
+                    (bands, error)
+                };
+                // What dyes absorb is not seen through V(λ): bands chosen more strictly are tried until they sum it up as well.
+                let tried = (0..HALVINGS).map(|n| chosen(wanted * 0.5_f64.powi(n))).find(|(_, error)| *error <= wanted);
+                let (bands, error) = tried.unwrap_or_else(|| (Bands::uniform(super::bands::RANGE_NM.0, 1.0), 0.0));
                 (bands, Some(error))
             }
         };
         Ok((bands.and_lines(&lines), error))
     }
 
-    /// The values of a spectrum in the bands. Beyond its table a reflectance (`edge`) goes on as it ends, an emission is 0.
+    /// The values in the bands of a spectrum that light is multiplied by. Beyond its table a reflectance (`edge`) goes on as it ends, what a dye
+    /// absorbs and emits is 0.
     fn values(
         &self,
         source: &SpectrumSource,
@@ -375,7 +424,7 @@ impl Builder<'_> {
         edge: colour::Edge,
         at: &Range<usize>,
     ) -> Result<Vec<f64>, Error> {
-        colour::Colour::of(self, source, edge, at)?.values(bands).map_err(|nm| {
+        colour::Colour::of(self, source, edge, at)?.factors(bands).map_err(|nm| {
             self.wrong(
                 at,
                 format!("a line at {nm} nm for which there is no band; expected the lines of the scene's sources"),
