@@ -201,11 +201,14 @@ fn interval(figure: &Figure, wavelength_error: f64) -> Option<[f64; 2]> {
     (figure.standard_error + left_out > 0.0).then_some([low - left_out, high + left_out])
 }
 
+/// By ascending wavelength: bands are those of densities, then lines.
 fn spectrum(s: &Spectral) -> Value {
+    let mut bands: Vec<_> = s.wavelengths_nm.iter().zip(&s.bands).collect();
+    bands.sort_by(|a, b| a.0.total_cmp(b.0));
     json!({
-        "wavelengths_nm": s.wavelengths_nm,
-        "values": s.bands.iter().map(|b| b.value).collect::<Vec<_>>(),
-        "standard_errors": s.bands.iter().map(|b| b.standard_error).collect::<Vec<_>>(),
+        "wavelengths_nm": bands.iter().map(|(nm, _)| **nm).collect::<Vec<_>>(),
+        "values": bands.iter().map(|(_, b)| b.value).collect::<Vec<_>>(),
+        "standard_errors": bands.iter().map(|(_, b)| b.standard_error).collect::<Vec<_>>(),
         "xyz": s.xyz,
         "chromaticity_xy": s.chromaticity_xy,
         "cct_k": s.cct_k,

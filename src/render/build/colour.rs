@@ -6,6 +6,7 @@ use glam::DVec3;
 use toml::Spanned;
 
 use super::Builder;
+use super::reach::LeftOut;
 use crate::colorimetry::Observer;
 use crate::colorimetry::rgb::SRGB;
 use crate::constants::SecondRadiation;
@@ -155,16 +156,36 @@ impl Colour {
         }
     }
 
-    /// The values in the bands; `Err` with the wavelength of a line that no band has.
+    /// The values of an emission in the bands; `Err` with the wavelength of a line that no band has.
     pub(super) fn values(&self, bands: &Bands) -> Result<Vec<f64>, f64> {
+        let mut values = self.factors(bands)?;
+        if !matches!(self, Self::Lines(_)) {
+            // A density has no power in a line.
+            let lines = values.iter_mut().zip(bands.widths()).filter(|(_, width)| **width == Width::Line);
+            lines.for_each(|(value, _)| *value = 0.0);
+        }
+        Ok(values)
+    }
+
+    /// The values in the bands of what light is multiplied by, which a line meets like any other wavelength; `Err` as of an emission.
+    pub(super) fn factors(&self, bands: &Bands) -> Result<Vec<f64>, f64> {
         match self {
             Self::Lines(spectrum) => bands.emission(spectrum),
-            // A density has no power in a line; a reflectance has a value there.
-            Self::Table(_, Edge::Dark) => Ok((bands.wavelengths_nm().iter().zip(bands.widths()))
-                .map(|(&nm, width)| if matches!(width, Width::Line) { 0.0 } else { self.at(nm) })
-                .collect()),
             _ => Ok(bands.wavelengths_nm().iter().map(|&nm| self.at(nm)).collect()),
         }
+    }
+
+    /// Whether some of the light of this emission is left by a factor, of a density at the entries of the CIE's tables.
+    fn meets(&self, factor: &Self) -> bool {
+        match self {
+            Self::Lines(s) => (s.wavelengths_nm().iter().zip(s.values())).any(|(&nm, v)| v * factor.at(nm) > 0.0),
+            _ => entries_nm().any(|nm| self.at(nm) * factor.at(nm) > 0.0),
+        }
+    }
+
+    /// Whether this emits a density that the render carries.
+    pub(super) fn is_density(&self) -> bool {
+        entries_nm().any(|nm| self.at(nm) > 0.0)
     }
 
     /// ∫ over the whole spectrum: over its own table, over the range that is carried for a constant, the sum for lines.
@@ -179,21 +200,52 @@ impl Colour {
     }
 }
 
+/// The wavelengths of the CIE's tables, nm.
+fn entries_nm() -> impl Iterator<Item = f64> {
+    (0_u32..).map(|i| RANGE_NM.0 + f64::from(i)).take_while(|nm| *nm <= RANGE_NM.1)
+}
+
+/// What makes a dye of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Dye {
+    pub absorption: Colour,
+    pub emission: Colour,
+}
+
 /// All spectra of a scene that decide which wavelengths it needs.
 #[derive(Debug)]
 pub(super) struct Colours {
     emissions: Vec<Colour>,
     reflectances: Vec<Colour>,
+    /// Those that some light excites, be it that of another.
+    dyes: Vec<Dye>,
 }
 
 /// More different reflectances than this are taken one at a time.
 const PAIRED: usize = 12;
 
+/// The dyes that some emission excites, or what another of them emits.
+fn excited(emissions: &[Colour], mut dark: Vec<Dye>) -> Vec<Dye> {
+    let mut lit: Vec<Dye> = Vec::new();
+    loop {
+        let (more, rest): (Vec<Dye>, Vec<Dye>) = dark
+            .into_iter()
+            .partition(|dye| emissions.iter().chain(lit.iter().map(|d| &d.emission)).any(|e| e.meets(&dye.absorption)));
+        if more.is_empty() {
+            return lit;
+        }
+        lit.extend(more);
+        dark = rest;
+    }
+}
+
 impl Colours {
-    pub(super) fn new(b: &Builder<'_>) -> Result<Self, Error> {
+    /// The spectra of all that is not left out.
+    pub(super) fn new(b: &Builder<'_>, left_out: &LeftOut) -> Result<Self, Error> {
         let d = b.description;
         let mut emissions = Vec::new();
-        for light in &d.light {
+        let lights = || d.light.iter().enumerate().filter(|(number, _)| !left_out.lights.contains(number));
+        for (_, light) in lights() {
             let at = super::light::span(light);
             let environment = light.environment.as_ref().map(toml::Spanned::get_ref);
             if let Some(file) = environment.and_then(|e| e.file.as_ref()) {
@@ -202,12 +254,13 @@ impl Colours {
             }
             emissions.push(Colour::of_light(b, light.spectrum.as_ref())?);
         }
-        for emission in d.shape.iter().filter_map(|s| s.emission.as_ref()) {
+        let shapes = d.shape.iter().enumerate().filter(|(number, _)| !left_out.shapes.contains(number));
+        for emission in shapes.filter_map(|(_, s)| s.emission.as_ref()) {
             emissions.push(Colour::of_light(b, emission.get_ref().spectrum.as_ref())?);
         }
         let mut reflectances = super::material::colours(b)?;
         let slides =
-            d.light.iter().filter_map(|l| l.barzel.as_ref()).filter_map(|b| Some((b.get_ref().slide.as_ref()?, b)));
+            lights().filter_map(|(_, l)| l.barzel.as_ref()).filter_map(|b| Some((b.get_ref().slide.as_ref()?, b)));
         for (slide, barzel) in slides {
             let picture = b.picture(&slide.file, super::picture::Of::Factors, &barzel.span())?;
             reflectances.extend(picture.typical());
@@ -222,12 +275,20 @@ impl Colours {
             });
             out
         };
-        Ok(Self { emissions: unique(emissions), reflectances: unique(reflectances) })
+        let emissions = unique(emissions);
+        let dyes = excited(&emissions, super::material::dyes(b)?);
+        Ok(Self { emissions, reflectances: unique(reflectances), dyes })
     }
 
     /// Whether anything emits a density.
     pub(super) fn has_densities(&self) -> bool {
-        self.emissions.is_empty() || self.emissions.iter().any(|c| !matches!(c, Colour::Lines(_)))
+        self.emissions.is_empty() || self.densities().next().is_some()
+    }
+
+    /// What lamps and dyes emit per nanometre.
+    fn densities(&self) -> impl Iterator<Item = &Colour> {
+        let lamps = self.emissions.iter().filter(|c| !matches!(c, Colour::Lines(_)));
+        lamps.chain(self.dyes.iter().map(|d| &d.emission))
     }
 
     /// The wavelengths of all lines, ascending, nm.
@@ -244,7 +305,7 @@ impl Colours {
     /// Every emission of a density by itself, with every reflectance, and with every pair of them.
     fn chains(&self) -> Vec<Vec<&Colour>> {
         let mut out = Vec::new();
-        for e in self.emissions.iter().filter(|c| !matches!(c, Colour::Lines(_))) {
+        for e in self.densities() {
             out.push(vec![e]);
             for (i, r) in self.reflectances.iter().enumerate() {
                 out.push(vec![e, r]);
@@ -263,6 +324,34 @@ impl Colours {
             out.push(Box::new(move |nm| chain.iter().map(|c| c.at(nm)).product()));
         }
         out
+    }
+
+    /// The greatest error in the bands of numbers of photons, relative to the integral by straight lines at 1 nm: of what a dye absorbs of an
+    /// emission, by itself and reflected once, and of what it emits.
+    pub(super) fn error_of_photons(&self, bands: &Bands) -> f64 {
+        let per_energy = Weighting::table(vec![RANGE_NM.0, RANGE_NM.1], vec![RANGE_NM.0, RANGE_NM.1]);
+        let entries = Bands::uniform(RANGE_NM.0, 1.0);
+        let mut fine = entries.weights(&per_energy);
+        fine[0] *= 0.5;
+        *fine.last_mut().expect("more than one band") *= 0.5;
+        let coarse = bands.weights(&per_energy);
+        let off = |product: &[&Colour]| {
+            let sum = |nm: &[f64], weights: &[f64]| -> f64 {
+                (nm.iter().zip(weights)).map(|(&nm, w)| w * product.iter().map(|c| c.at(nm)).product::<f64>()).sum()
+            };
+            let exact = sum(entries.wavelengths_nm(), &fine);
+            let found = sum(bands.wavelengths_nm(), &coarse);
+            if exact > 0.0 { (found - exact).abs() / exact } else { 0.0 }
+        };
+        let mut worst = 0.0_f64;
+        for dye in &self.dyes {
+            worst = worst.max(off(&[&dye.emission]));
+            for e in self.densities() {
+                worst = worst.max(off(&[e, &dye.absorption]));
+                worst = self.reflectances.iter().map(|r| off(&[e, r, &dye.absorption])).fold(worst, f64::max);
+            }
+        }
+        worst
     }
 
     /// The greatest error of X, Y and Z of the same products, relative to the largest of the three, where light is its linear sRGB and a

@@ -197,7 +197,10 @@ impl Builder<'_> {
                 let own = picture.white.colour();
                 self.scaled(colour.unwrap_or(&own), r.value, r.kind, bands, quantities, at)?
             }
-            (false, None) if colour.is_none() => vec![1.0; bands.len()],
+            // Without power in lines, as any density.
+            (false, None) if colour.is_none() => {
+                self.scaled(&Colour::Constant(1.0), 1.0, Kind::Spectral, bands, quantities, at)?
+            }
             (true, None) => {
                 let message = "a picture in colours without a `radiance`; expected what its white (R = G = B = 1) stands for, such as `1 cd/m2`";
                 return Err(self.wrong(at, message));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::colour::{Colour, Edge, Role};
+use super::colour::{Colour, Dye, Edge, Role};
 use super::picture::Of;
 use super::{Builder, Quantities};
 use crate::brdf::Brdf;
@@ -18,7 +18,7 @@ use crate::brdf::microfacet::{Distribution, Masking, Microfacet};
 use crate::brdf::specular::Specular;
 use crate::geometry::direction;
 use crate::render::audit::bias::{self, SingleScattering};
-use crate::render::bands::{Bands, RANGE_NM};
+use crate::render::bands::{Bands, RANGE_NM, Width};
 use crate::render::description::Error;
 use crate::render::description::material::{
     Checkerboard as Fields, Dielectric as Glass, Material as Described, Metal, Pane, Texture as DescribedTexture,
@@ -97,9 +97,29 @@ impl Builder<'_> {
         }
         if let Some(dye) = &m.dye {
             let (d, span) = (dye.get_ref(), dye.span());
-            let reflectance = self.values(&d.reflectance, bands, &Role::factor("reflectance"))?;
-            let absorption = self.values(&d.absorption, bands, &Role::absorption("absorption"))?;
-            let emission = self.values(&d.emission, bands, &Role::emission("emission"))?;
+            let (reflectance, absorption, emission) =
+                (Role::factor("reflectance"), Role::absorption("absorption"), Role::emission("emission"));
+            if let Colour::Lines(_) = Colour::of(self, &d.absorption, &absorption)? {
+                let message = "lines as a dye's `absorption`; expected its share at every wavelength";
+                return Err(self.wrong(&d.absorption.span(), message));
+            }
+            if !Colour::of(self, &d.emission, &emission)?.is_density() {
+                let (low, high) = RANGE_NM;
+                let message =
+                    format!("an `emission` of nothing; expected a density above 0 between {low} and {high} nm");
+                return Err(self.wrong(&d.emission.span(), message));
+            }
+            let reflectance = self.values(&d.reflectance, bands, &reflectance)?;
+            let absorption = self.values(&d.absorption, bands, &absorption)?;
+            let emission = self.values(&d.emission, bands, &emission)?;
+            let nodes = emission.iter().zip(bands.widths()).filter(|(_, width)| **width != Width::Line);
+            if let Some(step) = self.description.render.wavelength_step_nm
+                && nodes.into_iter().all(|(e, _)| *e == 0.0)
+            {
+                let message =
+                    format!("no wavelength in a dye's `emission`; expected a `wavelength_step_nm` below {step}");
+                return Err(self.wrong(&d.emission.span(), message));
+            }
             let made = Fluorescent::dye(bands, &reflectance, &absorption, &emission, d.quantum_yield, !m.one_sided);
             kinds.push(Arc::new(made.map_err(|e| self.wrong(&span, e))?));
         }
@@ -279,10 +299,7 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
             parts.get_ref().iter().try_for_each(|p| add(&p.share, Role::factor("share")))?;
         }
         if let Some(dye) = &m.dye {
-            let d = dye.get_ref();
-            add(&d.reflectance, Role::factor("reflectance"))?;
-            add(&d.absorption, Role::absorption("absorption"))?;
-            add(&d.emission, Role::emission("emission"))?;
+            add(&dye.get_ref().reflectance, Role::factor("reflectance"))?;
         }
     }
     out.append(&mut pictures);
@@ -301,6 +318,20 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
         }
     }
     Ok(out)
+}
+
+/// The dyes of surfaces.
+pub(super) fn dyes(b: &Builder<'_>) -> Result<Vec<Dye>, Error> {
+    let of_a_surface = |m: &&Described| {
+        b.description.shape.iter().filter_map(|s| s.material.as_ref()).any(|name| name.get_ref() == m.name.get_ref())
+    };
+    let dyes = b.description.material.iter().filter(of_a_surface).filter_map(|m| m.dye.as_ref());
+    dyes.map(|dye| {
+        let d = dye.get_ref();
+        let absorption = Colour::of(b, &d.absorption, &Role::absorption("absorption"))?;
+        Ok(Dye { absorption, emission: Colour::of(b, &d.emission, &Role::emission("emission"))? })
+    })
+    .collect()
 }
 
 /// A described BRDF's values for two pairs of directions, one near the mirror direction and one off it, and its mirror's, at 1 nm.

@@ -12,6 +12,8 @@ mod picture;
 mod radiosity;
 mod reach;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -20,7 +22,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::audit::bias::SingleScattering;
-use super::bands::Bands;
+use super::bands::{Bands, Chosen};
 use super::description::spectrum::SpectrumSource;
 use super::description::{Carried, Description, Error, Model, Solver};
 use super::format::Object;
@@ -150,6 +152,9 @@ pub struct Incomplete {
     pub column: u64,
 }
 
+/// How often the tolerance of bands is halved before all are carried.
+const HALVINGS: i32 = 12;
+
 /// What the parts of the builder share.
 struct Builder<'a> {
     text: &'a str,
@@ -202,6 +207,19 @@ impl<'a> Origin<'a> {
     }
 }
 
+/// Surfaces and lights in the bands that they decided.
+struct Prepared {
+    bands: Bands,
+    /// What is left of weighted sums over wavelength, and of watts, relative.
+    errors: Option<[f64; 2]>,
+    quantities: Quantities,
+    materials: Vec<material::Named>,
+    parts: Vec<Part>,
+    surfaces: Vec<Range<usize>>,
+    lights: Vec<reach::Numbered>,
+    left_out: reach::LeftOut,
+}
+
 /// Builds a scene from its text and what was read from it.
 ///
 /// # Errors
@@ -213,31 +231,11 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
 fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let (text, description) = (builder.text, builder.description);
     builder.check_names()?;
-    let colours = colour::Colours::new(builder)?;
-    let (bands, errors) = builder.bands(&colours)?;
-    let quantities = Quantities::new(&bands);
-    let materials = builder.materials(&bands)?;
-    let (mut parts, surfaces) = builder.parts(&materials, &bands, &quantities)?;
-    let sphere = around(&parts);
-    let mut lights: Vec<(String, Arc<dyn Light>)> = Vec::new();
-    for (number, light) in description.light.iter().enumerate() {
-        let name = light::name(light, number);
-        lights.push((name, builder.light(light, number, &bands, &quantities, sphere)?));
-    }
-    let (mut dark_lights, mut out_of_reach) = (Vec::new(), Vec::new());
-    if description.render.model == Model::Minimal {
-        let mut flux = vec![0.0; bands.len()];
-        lights.retain(|(name, light)| {
-            light.flux(&mut flux);
-            let shines = flux.iter().any(|f| *f != 0.0);
-            if !shines {
-                dark_lights.push(name.clone());
-            }
-            shines
-        });
-        out_of_reach = builder.out_of_reach(&mut parts, &surfaces, &mut lights);
-    }
-    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, [dark_lights, out_of_reach], bands.len());
+    let Prepared { bands, errors, quantities, materials, parts, surfaces, lights, left_out } =
+        builder.prepared()?;
+    let lights: Vec<(String, Arc<dyn Light>)> = lights.into_iter().map(|(_, name, light)| (name, light)).collect();
+    let left_out = [left_out.without_flux, left_out.out_of_reach];
+    let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, left_out, bands.len());
     let (mut light_names, lights): (Vec<_>, Vec<_>) = lights.into_iter().unzip();
     let materials_of = description.shape.iter().zip(&surfaces).flat_map(|(shape, surfaces)| {
         let wanted = shape.material.as_ref().map(toml::Spanned::get_ref);
@@ -314,7 +312,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
 pub fn error_in_rgb(text: &str, description: &Description, files: &dyn Files) -> Result<Option<f64>, Error> {
     let meshes = &Meshes::default();
     let builder = Builder { text, description, files, meshes, pictures: RefCell::default() };
-    Ok(colour::Colours::new(&builder)?.error_in_rgb())
+    Ok(colour::Colours::new(&builder, &reach::LeftOut::default())?.error_in_rgb())
 }
 
 /// The sphere around all bounded surfaces, and around the origin where there are none.
@@ -349,6 +347,49 @@ impl Builder<'_> {
         unique(d.sensor.iter().map(|s| &s.name).collect(), "sensor")
     }
 
+    /// Surfaces and lights. Which lights are left out is known when they are built, and they are built in bands: where some are, and the rest
+    /// needs other bands, all is built once more.
+    fn prepared(&self) -> Result<Prepared, Error> {
+        let bands = |left_out: &_| self.bands(&colour::Colours::new(self, left_out)?);
+        let mut first = self.prepared_in(bands(&reach::LeftOut::default())?, None)?;
+        if self.description.render.model != Model::Minimal {
+            return Ok(first);
+        }
+        let Prepared { bands: carried, parts, surfaces, lights, .. } = &mut first;
+        first.left_out = self.leave_out(parts, surfaces, lights, carried.len());
+        if first.left_out.lights.is_empty() && first.left_out.shapes.is_empty() {
+            return Ok(first);
+        }
+        let (bands, errors) = bands(&first.left_out)?;
+        if bands == first.bands {
+            return Ok(Prepared { errors, ..first });
+        }
+        self.prepared_in((bands, errors), Some(first))
+    }
+
+    /// Surfaces and lights in the bands given, but for what was left out `before`.
+    fn prepared_in(
+        &self,
+        (bands, errors): (Bands, Option<[f64; 2]>),
+        before: Option<Prepared>,
+    ) -> Result<Prepared, Error> {
+        let nothing = reach::LeftOut::default();
+        let left_out = before.as_ref().map_or(&nothing, |b| &b.left_out);
+        let quantities = Quantities::new(&bands);
+        let materials = self.materials(&bands)?;
+        let built = before.as_ref().map(|b| (&*b.parts, &*b.surfaces));
+        let (parts, surfaces) = self.parts(&materials, &bands, &quantities, left_out, built)?;
+        let sphere = around(&parts);
+        let mut lights = Vec::new();
+        let all = self.description.light.iter().enumerate();
+        for (number, light) in all.filter(|(number, _)| !left_out.lights.contains(number)) {
+            let name = light::name(light, number);
+            lights.push((number, name, self.light(light, number, &bands, &quantities, sphere)?));
+        }
+        let left_out = before.map_or(nothing, |b| b.left_out);
+        Ok(Prepared { bands, errors, quantities, materials, parts, surfaces, lights, left_out })
+    }
+
     /// The wavelengths to carry: as asked for, or as few as the scene's spectra allow, and the lines of its line sources; with the errors that are left, of
     /// weighted sums and of watts.
     fn bands(&self, colours: &colour::Colours) -> Result<(Bands, Option<[f64; 2]>), Error> {
@@ -380,22 +421,32 @@ impl Builder<'_> {
                 let functions: Vec<&dyn Fn(f64) -> f64> = products.iter().map(|p| p.as_ref() as _).collect();
                 // What a reading is to be known to its wavelengths must be able to tell.
                 let targets = self.description.sensor.iter().filter_map(|s| s.target.as_ref().map(|t| t.0));
-                let tolerance = targets.fold(render.wavelength_tolerance, f64::min);
-                let chosen = Bands::choose(&functions, &weightings, tolerance);
-                (chosen.bands, Some([chosen.error, chosen.radiant_error]))
+                let wanted = targets.fold(render.wavelength_tolerance, f64::min);
+                let chosen = |tolerance: f64| {
+                    let chosen = Bands::choose(&functions, &weightings, tolerance);
+                    let error = chosen.error.max(colours.error_of_photons(&chosen.bands));
+                    Chosen { error, ..chosen }
+                };
+                // What dyes absorb is not seen through V(λ): bands chosen more strictly are tried until they sum it up as well.
+                let tried = (0..HALVINGS).map(|n| chosen(wanted * 0.5_f64.powi(n))).find(|c| c.error <= wanted);
+                let finest =
+                    || Chosen { bands: Bands::uniform(super::bands::RANGE_NM.0, 1.0), error: 0.0, radiant_error: 0.0 };
+                let Chosen { bands, error, radiant_error } = tried.unwrap_or_else(finest);
+                (bands, Some([error, radiant_error]))
             }
         };
         Ok((bands.and_lines(&lines), errors))
     }
 
-    /// The values of a spectrum in the bands.
+    /// The values in the bands of a spectrum that light is multiplied by. Beyond its table a reflectance goes on as it ends, what a dye
+    /// absorbs and emits is 0.
     fn values(
         &self,
         source: &toml::Spanned<SpectrumSource>,
         bands: &Bands,
         role: &colour::Role,
     ) -> Result<Vec<f64>, Error> {
-        colour::Colour::of(self, source, role)?.values(bands).map_err(|nm| {
+        colour::Colour::of(self, source, role)?.factors(bands).map_err(|nm| {
             self.wrong(
                 &source.span(),
                 format!("a line at {nm} nm for which there is no band; expected the lines of the scene's sources"),

@@ -12,29 +12,71 @@ use crate::render::light::area::AreaLight;
 use crate::render::scene::Part;
 use crate::render::shape::Bounds;
 
+/// What was left out, by its number in the description.
+#[derive(Debug, Default)]
+pub(super) struct LeftOut {
+    /// Lights.
+    pub lights: Vec<usize>,
+    /// Shapes none of whose surfaces shines any more.
+    pub shapes: Vec<usize>,
+    /// Surfaces that do not shine any more, by their number among all.
+    pub surfaces: Vec<usize>,
+    /// The lights of no flux.
+    pub without_flux: Vec<String>,
+    /// Those that reach nothing.
+    pub out_of_reach: Vec<String>,
+}
+
+/// A light of the description: its number there and its name.
+pub(super) type Numbered = (usize, String, Arc<dyn Light>);
+
 impl Builder<'_> {
-    /// Takes the lights away that reach neither a surface nor an instrument, of surfaces their emission; the names of them.
-    ///
-    /// A light is kept where nothing is known of how far it reaches ([`Light::can_reach`]), where a surface has no bounds, and where an
-    /// instrument surrounds the scene.
-    pub(super) fn out_of_reach(
+    /// Takes the lights away that have no flux, and those that reach nothing.
+    pub(super) fn leave_out(
         &self,
         parts: &mut [Part],
         surfaces: &[Range<usize>],
-        lights: &mut Vec<(String, Arc<dyn Light>)>,
-    ) -> Vec<String> {
+        lights: &mut Vec<Numbered>,
+        bands: usize,
+    ) -> LeftOut {
+        let mut out = LeftOut::default();
+        let mut flux = vec![0.0; bands];
+        lights.retain(|(number, name, light)| {
+            light.flux(&mut flux);
+            let shines = flux.iter().any(|f| *f != 0.0);
+            if !shines {
+                out.lights.push(*number);
+                out.without_flux.push(name.clone());
+            }
+            shines
+        });
+        self.out_of_reach(parts, surfaces, lights, &mut out);
+        out
+    }
+
+    /// Takes the lights away that reach neither a surface nor an instrument, of surfaces their emission.
+    ///
+    /// A light is kept where nothing is known of how far it reaches ([`Light::can_reach`]), where a surface has no bounds, and where an
+    /// instrument surrounds the scene.
+    fn out_of_reach(
+        &self,
+        parts: &mut [Part],
+        surfaces: &[Range<usize>],
+        lights: &mut Vec<Numbered>,
+        out: &mut LeftOut,
+    ) {
         let Some(places) = self.description.sensor.iter().map(place).collect::<Option<Vec<Bounds>>>() else {
-            return Vec::new();
+            return;
         };
         let bounds: Vec<Bounds> = parts.iter().map(|part| part.shape.bounds()).collect();
         if bounds.iter().any(|b| !b.is_finite()) {
-            return Vec::new();
+            return;
         }
-        let mut names = Vec::new();
-        lights.retain(|(name, light)| {
+        lights.retain(|(number, name, light)| {
             let matters = bounds.iter().chain(&places).any(|b| light.can_reach(b));
             if !matters {
-                names.push(name.clone());
+                out.lights.push(*number);
+                out.out_of_reach.push(name.clone());
             }
             matters
         });
@@ -45,11 +87,14 @@ impl Builder<'_> {
                 let others = bounds.iter().enumerate().filter(|(other, _)| *other != own).map(|(_, b)| b);
                 if !others.chain(&places).any(|b| light.can_reach(b)) {
                     parts[own].emission = None;
-                    names.push(surface::name(shape, number));
+                    out.surfaces.push(own);
+                    out.out_of_reach.push(surface::name(shape, number));
                 }
             }
+            if shape.emission.is_some() && parts[surfaces.clone()].iter().all(|p| p.emission.is_none()) {
+                out.shapes.push(number);
+            }
         }
-        names
     }
 }
 

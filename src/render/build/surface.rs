@@ -11,6 +11,7 @@ use toml::Spanned;
 use super::analysis::is_flat;
 use super::colour::Colour;
 use super::material::Named;
+use super::reach::LeftOut;
 use super::{Builder, Incomplete, Quantities};
 use crate::brdf::lambert::Lambert;
 use crate::render::bands::Bands;
@@ -61,12 +62,15 @@ pub(super) fn name(shape: &Described, number: usize) -> String {
 }
 
 impl Builder<'_> {
-    /// All surfaces, and which of them each described shape is.
+    /// All surfaces, and which of them each described shape is; what is left out does not shine. Those of a build with other bands are taken as
+    /// they are.
     pub(super) fn parts(
         &self,
         materials: &[Named],
         bands: &Bands,
         quantities: &Quantities,
+        left_out: &LeftOut,
+        built: Option<(&[Part], &[Range<usize>])>,
     ) -> Result<(Vec<Part>, Vec<Range<usize>>), Error> {
         let black = Lambert::new(vec![0.0; bands.len()]).expect("a reflectance of 0");
         let black: Arc<dyn Material> = Arc::new(Opaque::new(Box::new(black), true));
@@ -76,24 +80,30 @@ impl Builder<'_> {
                 None => Arc::clone(&black),
                 Some(wanted) => self.named(materials, wanted)?,
             };
-            let faces = self.faces(shape, number)?;
+            let faces = match built {
+                Some((parts, surfaces)) => {
+                    parts[surfaces[number].clone()].iter().map(|part| Arc::clone(&part.shape)).collect()
+                }
+                None => self.faces(shape, number)?,
+            };
             // Asked for where it is needed: that of a mesh is added up over all triangles.
             let area = || faces.iter().map(|f| f.area()).sum::<f64>();
             if let Some(e) = shape.emission.as_ref().filter(|_| !area().is_finite()) {
                 return Err(self.wrong(&e.span(), "a plane without bounds that emits; expected a shape of finite area"));
             }
             ranges.push(parts.len()..parts.len() + faces.len());
-            let emission = match &shape.emission {
+            let first = parts.len();
+            let emission = match shape.emission.as_ref().filter(|_| !left_out.shapes.contains(&number)) {
                 None => None,
                 Some(e) if e.get_ref().lamp.is_some() => {
                     Some(Arc::new(self.lamp_emission(shape, e, &faces, bands, quantities)?))
                 }
                 Some(e) => Some(Arc::new(self.emission(e.get_ref(), &e.span(), area(), bands, quantities)?)),
             };
-            parts.extend(faces.into_iter().map(|shape| Part {
+            parts.extend(faces.into_iter().enumerate().map(|(face, shape)| Part {
                 shape,
                 material: Arc::clone(&material),
-                emission: emission.clone(),
+                emission: emission.clone().filter(|_| !left_out.surfaces.contains(&(first + face))),
             }));
         }
         Ok((parts, ranges))
