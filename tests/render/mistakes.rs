@@ -72,7 +72,7 @@ fn a_spectrum_is_told_at_its_own_place() {
         ),
         // Negative where it enters the wavelengths that are carried, between points that are not carried.
         (
-            "[[material]]\nname = \"m\"\nreflectance = [[260, -1], [460, 1], [830, 1]]",
+            "[[material]]\nname = \"m\"\nreflectance = [[260, -1], [460, 0], [830, 1]]",
             "3:15: `reflectance` is -0.5 at 360 nm; expected a number or spectrum from 0 to 1",
         ),
         (
@@ -89,17 +89,17 @@ fn a_spectrum_is_told_at_its_own_place() {
         ),
         (
             "[[material]]\nname = \"m\"\npane = { index = 1.5, transmittance = 1.1 }",
-            "3:38: `transmittance` is 1.1; expected a number or spectrum from 0 to 1",
+            "3:39: `transmittance` is 1.1; expected a number or spectrum from 0 to 1",
         ),
         (
             "[[material]]\nname = \"m\"\ndye = { reflectance = 0.1, absorption = -0.1, emission = 1, quantum_yield = 1 }",
-            "3:40: `absorption` is -0.1; expected a number or spectrum from 0 to 1",
+            "3:41: `absorption` is -0.1; expected a number or spectrum from 0 to 1",
         ),
     ]);
     let parts = "[[material]]\nname = \"a\"\nreflectance = 0.5\n[[material]]\nname = \"m\"\n";
     for (shares, message) in [
         (["0.7", "0.5"], "6:11: the shares sum to 1.2; expected at most 1"),
-        (["0.7", "-0.5"], "6:66: `share` is -0.5; expected a number or spectrum from 0 to 1"),
+        (["0.7", "-0.5"], "6:72: `share` is -0.5; expected a number or spectrum from 0 to 1"),
     ] {
         let [a, b] = shares;
         let mixture = format!("mixture = [{{ material = \"a\", share = {a} }}, {{ material = \"a\", share =  {b} }}]");
@@ -128,7 +128,7 @@ fn a_value_is_told_at_its_own_place_and_in_its_own_unit() {
         ("[render]\nmeter_samples = 0", "2:17: found 0 samples; expected 1 or more"),
         (
             "[[sensor]]\nname = \"q\"\nilluminance = { grid = { corner = [0, 0, 0], edges = [[1, 0, 0], [0, 1, 0]], points = [0, 3] } }",
-            "3:88: a grid of 0 × 3 points; expected 1 to 100000 of them",
+            "3:87: a grid of 0 × 3 points; expected 1 to 100000 of them",
         ),
         (
             "[[sensor]]\nname = \"q\"\ntarget = \"0 %\"\nilluminance = { at = [0, 0, 0] }",
@@ -136,11 +136,11 @@ fn a_value_is_told_at_its_own_place_and_in_its_own_unit() {
         ),
         (
             "[[sensor]]\nname = \"q\"\nluminance = { at = [0, 0, 1], look_at = [0, 0, 0], acceptance = \"200 deg\" }",
-            "3:66: `acceptance` is 200 deg; expected above 0 to 180 deg",
+            "3:65: `acceptance` is 200 deg; expected above 0 to 180 deg",
         ),
         (
             "[[sensor]]\nname = \"q\"\ncamera = { at = [0, 0, 1], look_at = [0, 0, 0], up = [0, 1, 0], resolution = [4, 2], projection = \"equirectangular\", field_of_view = \"60 deg\" }",
-            "3:133: `field_of_view` of a camera that sees all directions",
+            "3:134: `field_of_view` of a camera that sees all directions",
         ),
         (
             "[[light]]\npoint = { at = [0, 0, 1], flux = \"1 lm\", intensity = \"1 cd\" }",
@@ -158,7 +158,7 @@ fn a_meter_on_a_point_light_is_refused() {
         for light in ["point = { flux = \"1 lm\"", "spot = { aim = [0, 0, -1], flux = \"1 lm\""] {
             let text = format!("[[light]]\n{light}, at = [0, 0, {place}] }}\n");
             if is_refused {
-                refused(&text, "4:8: sensor `p` stands on light `light 1`, whose light is infinite there");
+                refused(&text, "5:8: sensor `p` stands on light `light 1`, whose light is infinite there");
             } else {
                 let folder = tempfile::tempdir().expect("a folder");
                 let path = scene(&folder, &format!("{text}{SENSOR}"));
