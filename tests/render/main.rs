@@ -18,6 +18,7 @@ mod knobs;
 mod lights;
 mod meshes;
 mod meters_from_lights;
+mod mistakes;
 mod packets;
 mod pictures;
 mod radiosity;

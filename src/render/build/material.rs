@@ -34,7 +34,6 @@ use crate::render::material::rough_dielectric::RoughDielectric;
 use crate::render::material::textured::{Checkerboard, Picture, Textured};
 use crate::render::material::thin_slab::ThinSlab;
 use crate::spectrum::integrate::Weighting;
-use crate::units::significant;
 
 /// A material by name.
 pub(super) type Named = (String, Arc<dyn Material>);
@@ -147,7 +146,7 @@ impl Builder<'_> {
             if sum > 1.0 + 8.0 * f64::EPSILON {
                 let same = parts.iter().all(|(shares, _)| shares.iter().all(|s| *s == shares[0]));
                 let place = if same { String::new() } else { format!(" at {nm} nm") };
-                let sum = significant(sum, 6);
+                let sum = (1e9 * sum).round() / 1e9;
                 let message = format!("the shares sum to {sum}{place}; expected at most 1");
                 return Err(self.wrong(at, message));
             }
