@@ -1,5 +1,6 @@
 #![no_main]
 
+use photopic::brdf::table::Table;
 use photopic::luminaire::Luminaire;
 use photopic::render::build::{Files, PictureFile, build};
 use photopic::render::description::Description;
@@ -24,6 +25,10 @@ impl Files for Nothing {
 
     fn picture(&self, file: &str) -> Result<PictureFile, String> {
         Err(format!("{file}: no such file; expected a picture"))
+    }
+
+    fn table(&self, file: &str) -> Result<Table, String> {
+        Err(format!("{file}: no such file; expected a measured BRDF"))
     }
 }
 

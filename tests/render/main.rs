@@ -16,6 +16,7 @@ mod instruments;
 mod keys;
 mod knobs;
 mod lights;
+mod measured;
 mod meshes;
 mod meters_from_lights;
 mod mistakes;

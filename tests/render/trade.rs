@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use glam::DVec3;
+use photopic::brdf::table::Table;
 use photopic::image::description::Meaning;
 use photopic::image::format::exr;
 use photopic::image::source::{Region, Source};
@@ -333,6 +334,10 @@ impl Files for Counted {
 
     fn picture(&self, file: &str) -> Result<PictureFile, String> {
         NoFiles.picture(file)
+    }
+
+    fn table(&self, file: &str) -> Result<Table, String> {
+        NoFiles.table(file)
     }
 }
 

@@ -12,6 +12,7 @@
 //! over angles and bands. The cosine keeps at least 15 %, so that f cosθ_i / pdf is at most f π/0.15 wherever the table is.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -32,7 +33,7 @@ const LEAST_COSINE: f64 = 0.15;
 /// A measured table that draws directions as it reflects them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledTable {
-    table: Table,
+    table: Arc<Table>,
     mirrored: Rings,
     back: Rings,
     /// Probability of the cosine, and of the mirror lobe among the rest.
@@ -43,7 +44,8 @@ pub struct SampledTable {
 impl SampledTable {
     /// Asks the table at some ten thousand pairs of directions.
     #[must_use]
-    pub fn new(table: Table) -> Self {
+    pub fn new(table: impl Into<Arc<Table>>) -> Self {
+        let table: Arc<Table> = table.into();
         let azimuths: &[f64] = if table.is_isotropic() { &[0.0] } else { &[0.0, 45.0, 90.0, 135.0] };
         let (mut mirrored, mut back) = ([0.0; RINGS], [0.0; RINGS]);
         let (rings, mut diffuse) = (Rings::empty(), 0.0);
@@ -87,6 +89,19 @@ impl SampledTable {
     #[must_use]
     pub fn table(&self) -> &Table {
         &self.table
+    }
+
+    /// Draws ω_i for a given ω_o above the horizon from three uniform numbers as [`Brdf::sample`] does, and asks the table nothing; it may be
+    /// below the horizon, where [`Brdf::pdf`] is 0.
+    pub(crate) fn draw(&self, outgoing: DVec3, u: [f64; 3]) -> Option<DVec3> {
+        let (cosine, rest) = split(u[0], self.cosine);
+        if cosine {
+            Some(sampling::cosine_hemisphere([u[1], u[2]]))
+        } else if split(rest, self.mirror).0 {
+            reflected(outgoing, self.mirrored.draw([u[1], u[2]]))
+        } else {
+            Some(about(outgoing, self.back.draw([u[1], u[2]])))
+        }
     }
 }
 
@@ -191,14 +206,7 @@ impl Brdf for SampledTable {
     }
 
     fn sample(&self, outgoing: DVec3, u: [f64; 3], weights: &mut [f64]) -> Option<Sampled> {
-        let (cosine, rest) = split(u[0], self.cosine);
-        let incident = if cosine {
-            sampling::cosine_hemisphere([u[1], u[2]])
-        } else if split(rest, self.mirror).0 {
-            reflected(outgoing, self.mirrored.draw([u[1], u[2]]))?
-        } else {
-            about(outgoing, self.back.draw([u[1], u[2]]))
-        };
+        let incident = self.draw(outgoing, u)?;
         sample_by(self, outgoing, incident, weights)
     }
 

@@ -14,7 +14,7 @@ use clap::Subcommand;
 
 pub(super) use check::WAVELENGTHS_NM;
 pub(super) use compress::open_basis;
-pub(super) use load::{BandArgs, Loaded, Ready, load, prepare};
+pub(super) use load::{BandArgs, Loaded, Ready, Subject, load, prepare};
 pub(super) use numbers::Bins;
 
 use super::{Failure, Talk};

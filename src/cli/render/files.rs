@@ -7,7 +7,10 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
+use crate::brdf::format::Format;
+use crate::brdf::table::Table;
 use crate::cli::Failure;
+use crate::cli::brdf;
 use crate::cli::convert::single;
 use crate::cli::image;
 use crate::constants::SecondRadiation;
@@ -125,6 +128,25 @@ impl Files for Scene {
         inputs.into_iter().for_each(|input| self.note(input));
         Ok(PictureFile { description, samples })
     }
+
+    fn table(&self, file: &str) -> Result<Table, String> {
+        let path = self.path(file);
+        if !Path::new(&path).is_file() {
+            return Err(format!("{path}: no such file; expected a measured BRDF"));
+        }
+        // A MERL table is told by its length; of one that was cut off the name says what it was to be.
+        let named = Path::new(file).extension().is_some_and(|e| e.eq_ignore_ascii_case("binary"));
+        let loaded = brdf::load(&path, named.then_some(Format::Merl));
+        match loaded.subject?.value {
+            brdf::Subject::Measured(read) => {
+                self.note(loaded.input);
+                Ok(read.table)
+            }
+            brdf::Subject::Described(_) => {
+                Err(format!("{path}: found a model; expected a measured BRDF, or the model as `brdf`"))
+            }
+        }
+    }
 }
 
 /// A file that a scene names, as a path.
@@ -204,7 +226,26 @@ pub(super) fn findings(path: &str, built: &Built, readings: &[Reading]) -> Vec<F
             .at(Location::default().in_file(path))
             .hint("leave out `denoise`, or take more samples")
     });
-    incomplete.chain(dark).chain(preview).chain(endless).chain(empty).chain(missed).chain(faults).chain(filtered).collect()
+    let gains = built.gains.iter().map(|gain| {
+        let [most, angle] = [gain.reflectance, gain.theta_deg].map(|v| significant(v, 3));
+        let message = format!(
+            "the table of material `{}` gives back {most} of what arrives at {angle}° to the normal: more than it gets",
+            gain.material
+        );
+        Finding::warning("R013", message).at(Location::at(gain.line, gain.column).in_file(path)).hint(
+            "what was measured stands; in a closed space of such surfaces light may grow, and paths need `max_edges`",
+        )
+    });
+    incomplete
+        .chain(gains)
+        .chain(dark)
+        .chain(preview)
+        .chain(endless)
+        .chain(empty)
+        .chain(missed)
+        .chain(faults)
+        .chain(filtered)
+        .collect()
 }
 
 /// The lights of which polished surfaces throw what no path meets, and the sensors that miss it.

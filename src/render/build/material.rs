@@ -10,7 +10,7 @@ use super::colour::{Colour, Dye, Edge, Role};
 use super::picture::Of;
 use super::{Builder, Quantities};
 use crate::brdf::Brdf;
-use crate::brdf::description::{Bands as BrdfBands, Material as Model};
+use crate::brdf::description::{Bands as BrdfBands, ErrorKind, Material as Model};
 use crate::brdf::fresnel::Fresnel;
 use crate::brdf::lambert::Lambert;
 use crate::brdf::medium::refractive_index;
@@ -44,6 +44,9 @@ fn place(b: &Builder<'_>, text: &Spanned<String>, e: &crate::brdf::description::
     if e.place.line == 1 {
         out.column += e.place.column;
     }
+    if matches!(e.kind, ErrorKind::Model { .. }) && !text.get_ref().contains('(') {
+        out.message += "; a measured table is `measured = { file = \"NAME\" }`";
+    }
     out
 }
 
@@ -75,6 +78,9 @@ impl Builder<'_> {
         if let Some(text) = &m.brdf {
             let brdf = self.model(text, bands)?;
             kinds.push(Arc::new(Opaque::new(brdf, !m.one_sided)));
+        }
+        if let Some(table) = &m.measured {
+            kinds.push(Arc::new(self.measured(&table.get_ref().file, bands, !m.one_sided, &table.span())?));
         }
         if let Some(metal) = &m.metal {
             kinds.push(self.metal(metal.get_ref(), bands, &metal.span())?);
@@ -125,7 +131,7 @@ impl Builder<'_> {
         let mut kinds = kinds.into_iter();
         let (Some(material), None) = (kinds.next(), kinds.next()) else {
             let message = format!(
-                "material `{}` has not one kind; expected one of reflectance, brdf, metal, dielectric, pane, mixture, dye",
+                "material `{}` has not one kind; expected one of reflectance, brdf, measured, metal, dielectric, pane, mixture, dye",
                 m.name.get_ref()
             );
             return Err(self.wrong(&m.name.span(), message));
@@ -305,6 +311,9 @@ pub(super) fn colours(b: &Builder<'_>) -> Result<Vec<Colour>, Error> {
     for m in &b.description.material {
         if let Some(text) = &m.brdf {
             out.push(colour_of(b, text)?);
+        }
+        if let Some(table) = &m.measured {
+            out.append(&mut b.colours_of_table(&table.get_ref().file, &table.span())?);
         }
         if let Some(metal) = &m.metal {
             let bands = Bands::uniform(RANGE_NM.0, 1.0);

@@ -8,6 +8,7 @@ mod heroes;
 mod instrument;
 mod light;
 mod material;
+mod measured;
 mod picture;
 mod radiosity;
 mod reach;
@@ -31,6 +32,7 @@ use super::light::Light;
 use super::light::bounding::BoundingSphere;
 use super::measure::Settings;
 use super::scene::{Part, Scene};
+use crate::brdf::table::Table;
 use crate::colorimetry::observer::Observer;
 use crate::constants::K_M;
 use crate::luminaire::Luminaire;
@@ -40,6 +42,7 @@ use crate::spectrum::Spectrum;
 
 pub use analysis::Analysis;
 pub use instrument::{Instrument, Kind, Quantities};
+pub use measured::Gain;
 pub use picture::PictureFile;
 pub use surface::Meshes;
 
@@ -68,6 +71,12 @@ pub trait Files {
     /// # Errors
     /// What is wrong with it, in words.
     fn picture(&self, file: &str) -> Result<PictureFile, String>;
+
+    /// The measured BRDF in a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    fn table(&self, file: &str) -> Result<Table, String>;
 }
 
 /// Of a scene without files: each that it names is refused by its name.
@@ -88,6 +97,10 @@ impl Files for NoFiles {
     }
 
     fn picture(&self, file: &str) -> Result<PictureFile, String> {
+        Err(no_file(file))
+    }
+
+    fn table(&self, file: &str) -> Result<Table, String> {
         Err(no_file(file))
     }
 }
@@ -124,6 +137,8 @@ pub struct Built {
     pub material_of_surface: Vec<usize>,
     /// What materials lose to a single scattering, by name.
     pub single_scattering: Vec<(String, SingleScattering)>,
+    /// Measured tables that give back more than they get.
+    pub gains: Vec<Gain>,
     /// Meshes that lost triangles.
     pub incomplete: Vec<Incomplete>,
     /// Light or instruments are in a closed space that absorbs nothing, where paths end by the solver's limits alone: what those leave out has no
@@ -163,6 +178,7 @@ struct Builder<'a> {
     meshes: &'a Meshes,
     /// By file, and whether as light.
     pictures: RefCell<HashMap<(String, bool), Rc<picture::Channels>>>,
+    tables: measured::Tables,
 }
 
 impl Builder<'_> {
@@ -203,7 +219,14 @@ impl<'a> Origin<'a> {
     /// The first mistake, with its place in the text.
     pub fn build(self, description: &Description) -> Result<Built, Error> {
         let Self { text, files, meshes } = self;
-        built(&Builder { text, description, files, meshes, pictures: RefCell::default() })
+        built(&Builder {
+            text,
+            description,
+            files,
+            meshes,
+            pictures: RefCell::default(),
+            tables: measured::Tables::default(),
+        })
     }
 }
 
@@ -231,10 +254,10 @@ pub fn build(text: &str, description: &Description, files: &dyn Files) -> Result
 fn built(builder: &Builder<'_>) -> Result<Built, Error> {
     let (text, description) = (builder.text, builder.description);
     builder.check_names()?;
-    let Prepared { bands, errors, quantities, materials, parts, surfaces, lights, left_out } =
-        builder.prepared()?;
+    let Prepared { bands, errors, quantities, materials, parts, surfaces, lights, left_out } = builder.prepared()?;
     let lights: Vec<(String, Arc<dyn Light>)> = lights.into_iter().map(|(_, name, light)| (name, light)).collect();
     let left_out = [left_out.without_flux, left_out.out_of_reach];
+    let gains = builder.gains(&materials, bands.len());
     let analysis = builder.analysis(&parts, &surfaces, &materials, &lights, left_out, bands.len());
     let (mut light_names, lights): (Vec<_>, Vec<_>) = lights.into_iter().unzip();
     let materials_of = description.shape.iter().zip(&surfaces).flat_map(|(shape, surfaces)| {
@@ -298,6 +321,7 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
         material_names,
         material_of_surface,
         single_scattering,
+        gains,
         incomplete,
         endless,
         denoises,
@@ -311,7 +335,8 @@ fn built(builder: &Builder<'_>) -> Result<Built, Error> {
 /// The first mistake in the scene's spectra, with its place in the text.
 pub fn error_in_rgb(text: &str, description: &Description, files: &dyn Files) -> Result<Option<f64>, Error> {
     let meshes = &Meshes::default();
-    let builder = Builder { text, description, files, meshes, pictures: RefCell::default() };
+    let builder =
+        Builder { text, description, files, meshes, pictures: RefCell::default(), tables: measured::Tables::default() };
     Ok(colour::Colours::new(&builder, &reach::LeftOut::default())?.error_in_rgb())
 }
 

@@ -22,7 +22,7 @@ use glam::{DMat3, DVec3};
 use super::Builder;
 use super::colour::{Colour, Edge, Role};
 use crate::colorimetry::observer::Observer;
-use crate::colorimetry::rgb::{Space, same_xy};
+use crate::colorimetry::rgb::{SRGB, Space, same_xy};
 use crate::constants::SecondRadiation;
 use crate::illuminant::named;
 use crate::image::{Content, Description, Meaning, RgbSpace};
@@ -255,6 +255,12 @@ fn part(index: usize) -> Colour {
     Colour::Table(Weighting::table(nm, values), Edge::Constant)
 }
 
+/// What 1 in each of red, green and blue of linear sRGB is of the three parts: a row for each part.
+pub(super) fn parts_of_srgb() -> [(Colour, [f64; 3]); 3] {
+    let (_, matrix) = parts(&SRGB).expect("a space whose white is D65");
+    [0, 1, 2].map(|k| (part(k), matrix.row(k).to_array()))
+}
+
 /// The white of a space and the matrix from its linear colours to coefficients of the parts.
 fn parts(space: &Space) -> Result<(White, DMat3), String> {
     let d65 = [0.3127, 0.3290];
@@ -286,7 +292,6 @@ fn parts(space: &Space) -> Result<(White, DMat3), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colorimetry::rgb::SRGB;
     use crate::image::Channel;
 
     fn picture(values: [f32; 3], space: Space) -> PictureFile {

@@ -21,6 +21,10 @@ pub struct Material {
     #[serde(default)]
     #[schemars(with = "Option<String>")]
     pub brdf: Option<Spanned<String>>,
+    /// A measured table, as `photopic brdf` reads it. Where it tells nothing, its best guess; values below 0 are 0.
+    #[serde(default)]
+    #[schemars(with = "Option<Measured>")]
+    pub measured: Option<Spanned<Measured>>,
     /// Metal, polished or rough; light that is scattered several times among its facets is kept.
     #[serde(default)]
     #[schemars(with = "Option<Metal>")]
@@ -49,9 +53,17 @@ pub struct Material {
     #[serde(default)]
     #[schemars(with = "Option<Texture>")]
     pub texture: Option<Spanned<Texture>>,
-    /// Dark from the inside of shapes (reflectance, brdf, dye); otherwise both sides are alike.
+    /// Dark from the inside of shapes (reflectance, brdf, measured, dye); otherwise both sides are alike.
     #[serde(default)]
     pub one_sided: bool,
+}
+
+/// A measured table.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Measured {
+    /// Beside the scene: MERL, RGL, UTIA, ASTM, Zemax, Klems, ALTA or CSV; its channels are wavelengths, red, green and blue (linear sRGB), or one alone.
+    pub file: String,
 }
 
 /// Metal.

@@ -3,6 +3,7 @@
 //! | file | what it is |
 //! |---|---|
 //! | [`opaque`] | any [`Brdf`](crate::brdf::Brdf), on one side or on both |
+//! | [`measured`] | a measured table |
 //! | [`compensated`], [`albedo`] | rough metal that loses nothing; the table that tells what one scattering loses |
 //! | [`dielectric`], [`rough_dielectric`] | polished and ground glass, water: reflect and refract |
 //! | [`thin_slab`] | a pane without thickness, all reflections inside |
@@ -17,6 +18,7 @@ pub mod albedo;
 pub mod compensated;
 pub mod dielectric;
 pub mod fluorescent;
+pub mod measured;
 pub mod mixture;
 pub mod opaque;
 pub mod rough_dielectric;

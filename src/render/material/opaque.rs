@@ -40,7 +40,7 @@ impl Opaque {
 }
 
 /// Seen from the other side: half a turn about the tangent would exchange left and right, so the grain stays and z changes sign.
-fn flipped(d: DVec3) -> DVec3 {
+pub(super) fn flipped(d: DVec3) -> DVec3 {
     DVec3::new(d.x, d.y, -d.z)
 }
 

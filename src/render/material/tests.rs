@@ -9,16 +9,19 @@ use glam::DVec3;
 use super::compensated::Compensated;
 use super::dielectric::Dielectric;
 use super::fluorescent::Fluorescent;
+use super::measured::Measured;
 use super::mixture::Mixture;
 use super::opaque::Opaque;
 use super::rough_dielectric::RoughDielectric;
 use super::textured::{Checkerboard, Textured};
 use super::thin_slab::ThinSlab;
 use super::{Material, Transport};
+use crate::brdf::Brdf;
 use crate::brdf::fresnel::Fresnel;
 use crate::brdf::lambert::Lambert;
 use crate::brdf::microfacet::{Distribution, Masking, Microfacet};
 use crate::brdf::specular::Specular;
+use crate::brdf::table::{Channel, HalfAngle, Resolution, SampledTable, Table};
 use crate::geometry::direction::from_degrees;
 use crate::math::random::Stream;
 use crate::render::bands::Bands;
@@ -54,11 +57,29 @@ fn dye() -> Arc<dyn Material> {
     Arc::new(Fluorescent::dye(&Bands::nodes(vec![500.0], 1.0), &[0.5], &[0.5], &[1.0], 1.0, true).unwrap())
 }
 
+/// A model in bins of half and difference angles.
+fn bins(model: &dyn Brdf) -> Arc<dyn Material> {
+    const RESOLUTION: Resolution = Resolution { theta_h: 30, theta_d: 30, phi_d: 36 };
+    let value = |bin: usize| {
+        let (i, o) = RESOLUTION.centre(bin).directions();
+        let mut value = [f64::NAN];
+        if i.z > 0.0 && o.z > 0.0 {
+            model.evaluate(i, o, &mut value);
+        }
+        value[0] as f32
+    };
+    let values = (0..RESOLUTION.bins()).map(value).collect();
+    let table = HalfAngle::new(RESOLUTION, vec![Channel::Wavelength(555.0)], values).unwrap();
+    Arc::new(Measured::new(Arc::new(SampledTable::new(Table::from(table))), &[vec![1.0]], true).unwrap())
+}
+
 fn cases() -> Vec<Case> {
     let case = |name, material, eta, conserves| Case { name, material, eta, conserves };
     let half = |a: Arc<dyn Material>, b: Arc<dyn Material>| -> Arc<dyn Material> {
         Arc::new(Mixture::new(vec![(vec![0.5], a), (vec![0.5], b)]).unwrap())
     };
+    let gold = Fresnel::conductor(&[0.2], &[3.0]).unwrap();
+    let facets = Microfacet::new(Distribution::Ggx([0.3; 2]), Masking::Smith, gold).unwrap();
     let board = || Box::new(Checkerboard::new(vec![0.2], vec![0.9], [2, 2]).unwrap());
     vec![
         case("diffuse", diffuse(1.0), 1.0, Some(1e-12)),
@@ -73,6 +94,9 @@ fn cases() -> Vec<Case> {
         case("half ground glass, half diffuse", half(ground([0.4; 2], 1.0, 1.5), diffuse(1.0)), 1.5, Some(5e-4)),
         case("textured", Arc::new(Textured::new(diffuse(1.0), board())), 1.0, Some(1e-12)),
         case("fluorescent", dye(), 1.0, Some(1e-12)),
+        // Single precision.
+        case("bins of a diffuser", bins(&Lambert::new(vec![1.0]).unwrap()), 1.0, Some(1e-7)),
+        case("bins of a metal", bins(&facets), 1.0, None),
     ]
 }
 
