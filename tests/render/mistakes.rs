@@ -52,11 +52,11 @@ fn a_spectrum_is_told_at_its_own_place() {
             "[[light]]\nname = \"l\"\n\nspectrum = \"nope\"\n[light.point]\nat = [0, 0, 1]\nflux = \"1 lm\"",
             "4:12: no spectrum is called `nope`",
         ),
-        ("[[light]]\npoint = { at = [0, 0, 1], flux = \"1 lm\" }\nspectrum = { file = \"no.csv\" }", "3:12: no.csv: "),
+        ("[[light]]\npoint = { at = [0, 0, 1], flux = \"1 lm\" }\nspectrum = { file = \"no.csv\" }", "3:12: "),
         // A spectrum of the scene is told where it stands, what it does not suit where it is used.
         (
             "[spectra]\nx = { file = \"no.csv\" }\n[[light]]\npoint = { at = [0, 0, 1], flux = \"1 lm\" }\nspectrum = \"x\"",
-            "2:5: no.csv: ",
+            "2:5: ",
         ),
         (
             "[spectra]\nx = [[400, 0.5], [700, 2]]\n[[material]]\nname = \"m\"\nreflectance = \"x\"",

@@ -366,8 +366,8 @@ impl Builder<'_> {
         };
         let factor = amount / content;
         if !factor.is_finite() {
-            return Err(self
-                .wrong(at, "a spectrum without any of the quantity that it is to be scaled to; expected light in it"));
+            let message = "a spectrum without any of the quantity that it is to be scaled to; expected light in it";
+            return Err(self.wrong_key(at, &["spectrum"], message));
         }
         values.iter_mut().for_each(|v| *v *= factor);
         Ok(values)
