@@ -46,12 +46,15 @@ pub struct Chosen {
 fn beyond(first_nm: f64, step_nm: f64, count: usize) -> [f64; 2] {
     #[expect(clippy::cast_precision_loss, reason = "some hundreds of nodes")]
     let last_nm = first_nm + (count - 1) as f64 * step_nm;
-    [first_nm - (RANGE_NM.0 - 0.5) - 0.5 * step_nm, RANGE_NM.1 + 0.5 - last_nm - 0.5 * step_nm]
+    // Nodes that begin later leave the rest out on purpose.
+    let below = if first_nm - RANGE_NM.0 < step_nm { first_nm - (RANGE_NM.0 - 0.5) - 0.5 * step_nm } else { 0.0 };
+    [below, RANGE_NM.1 + 0.5 - last_nm - 0.5 * step_nm]
 }
 
 impl Bands {
     /// The nodes from `first_nm` on, a step apart, up to the end of [`RANGE_NM`]. Each stands for the wavelengths that are nearest to it; at both ends of
-    /// the range, half a nanometre beyond which the sums at 1 nm end, for all that are left, so that no radiant power is lost there. From 360 nm at 1 nm
+    /// the range, half a nanometre beyond which the sums at 1 nm end, for all that are left, so that no radiant power is lost there (below the first node
+    /// where that is less than a step). From 360 nm at 1 nm
     /// they are the entries of the CIE's tables.
     ///
     /// # Panics
