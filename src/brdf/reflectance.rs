@@ -165,6 +165,11 @@ pub fn directional<B: Brdf + ?Sized>(brdf: &B, incident: DVec3, cone: &Cone, ref
     directional_to(brdf, incident, cone, Aims::of(brdf).fine, reflectance)
 }
 
+/// [`directional`] over the hemisphere to 1e-4, as of a table: for what a figure of no more digits is added to.
+pub(crate) fn hemispherical_as_table<B: Brdf + ?Sized>(brdf: &B, incident: DVec3, reflectance: &mut [f64]) -> f64 {
+    directional_to(brdf, incident, &Cone::HEMISPHERE, Aims::TABLE.fine, reflectance)
+}
+
 fn directional_to<B: Brdf + ?Sized>(
     brdf: &B,
     incident: DVec3,

@@ -2,7 +2,7 @@
 //! machines did.
 //!
 //! ```text
-//! photopic render 8\n
+//! photopic render 9\n
 //! length of the header, u64; header, JSON
 //! per meter point and replicate:  samples, faults, sums per band; checksum
 //! per picture and row:            noise, samples of all channels (f32, channel by channel); checksum
@@ -22,7 +22,7 @@ use super::estimate::{Faults, REPLICATES, Replicate};
 use super::noise::Noise;
 
 /// The first bytes of a file.
-const MAGIC: &[u8] = b"photopic render 8\n";
+const MAGIC: &[u8] = b"photopic render 9\n";
 /// The longest header that is read, bytes.
 const LONGEST_HEADER: u64 = 1 << 20;
 const CHECKSUM: usize = 8;
@@ -78,6 +78,8 @@ pub struct Task {
     /// Pictures are filtered, whatever the scene says.
     #[serde(default)]
     pub denoise: bool,
+    /// Packets of the energy audit, which is made when the shares are joined.
+    pub packets: u64,
     /// The file of settings in place of the scene's, its text; empty without one.
     #[serde(default)]
     pub settings: String,
@@ -337,6 +339,7 @@ mod tests {
                 seed: 1,
                 full: false,
                 denoise: false,
+                packets: 2000,
                 settings: String::new(),
             },
             share: Share { index: 1, count: 3 },

@@ -25,6 +25,7 @@ pub fn energy(built: &Built, audit: &Audit) -> Value {
         json!({
             "name": name,
             "stated_w": light.stated_w,
+            "packets": light.packets,
             "emitted": watts(light.emitted_w),
             "travels_as_light": light.travels,
         })

@@ -142,6 +142,45 @@ fn materials_and_lights_that_are_wrong_are_found() {
     assert!(found.lights[0].is_off(), "{found:?}");
 }
 
+/// A light whose share in the flux is a thousandth of a packet's is checked by packets of its own.
+#[test]
+fn faint_lights_have_packets_of_their_own() {
+    let faint = || Point::new(DVec3::X, &[1e-6]).expect("a lamp");
+    let found = audit(&scene(Vec::new(), vec![lamp(), Arc::new(faint())]), &[], 1 << 14);
+    assert_eq!((found.packets, found.lights[0].packets, found.lights[1].packets), (1 << 14, (512 - 16) * 32, 16 * 32));
+    for (light, intensity) in found.lights.iter().zip([100.0, 1e-6]) {
+        let flux = 4.0 * PI * intensity;
+        // A point light's packets are all alike.
+        assert!((light.emitted_w.value - flux).abs() < 1e-9 * flux && !light.is_off(), "{found:?}");
+    }
+    let found = audit(&scene(Vec::new(), vec![lamp(), Arc::new(Boaster(faint()))]), &[], 1 << 14);
+    assert!(!found.lights[0].is_off() && found.lights[1].is_off(), "{found:?}");
+}
+
+/// More lights than packets of a replicate: those of which few packets or none were drawn are not accused.
+#[test]
+fn lights_without_packets_are_not_accused() {
+    let faint: Arc<dyn Light> = Arc::new(Point::new(DVec3::X, &[1e-6]).expect("a lamp"));
+    let lights = [vec![lamp(); 40], vec![faint; 40]].concat();
+    let found = audit(&scene(Vec::new(), lights), &[], 320);
+    assert_eq!((found.packets, found.lights[79].packets), (320, 0));
+    assert!(found.lights.iter().all(|l| !l.is_off()), "{found:?}");
+}
+
+/// A disk that takes 1e-6 ends one in a million packets, which no packet of few meets; those that go on are as much too strong. Of N
+/// packets, a share h of which falls on it, that is a variance of h 1e-6/N of the flux squared.
+#[test]
+fn ends_that_no_packet_met_are_in_the_error_of_the_balance() {
+    let disk = Disk::new(DVec3::Z, -DVec3::Z, 1.0).expect("a disk");
+    let found = audit(&scene(vec![part(disk, 1.0 - 1e-6, None)], vec![lamp()]), &[0], 1 << 12);
+    let (flux, share) = (4.0 * PI * 100.0, 0.5 * (1.0 - 0.5_f64.sqrt()));
+    // About 600 packets fall on the disk: their number is within 4 of its standard deviations, 0.16, and its root within half of that.
+    assert!((found.balance_w.value / (-1e-6 * share * flux) - 1.0).abs() < 0.16, "{found:?}");
+    let expected = flux * (share * 1e-6 / 4096.0).sqrt();
+    assert!((found.balance_w.standard_error / expected - 1.0).abs() < 0.08, "{found:?}");
+    assert!(!found.is_unbalanced(), "{found:?}");
+}
+
 /// An integrating sphere of reflectance ρ with a lamp in its middle: E = E₀ Σ ρᵏ. Paths of n edges know n − 1 reflections, so that they
 /// lack ρⁿ of the light: 47.8 % at ρ = 0.9 with seven reflections, 43.0 % with one more.
 #[test]

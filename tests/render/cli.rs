@@ -356,15 +356,18 @@ camera = { at = [-1, -1, 1], look_at = [1, 1, 1], resolution = [9, 7], exr = "vi
         let mut command = photopic();
         command
             .current_dir(folder.path())
-            .args(["render", "scene.toml", "--samples", "3", "--meter-samples", "640"])
+            .args(["render", "scene.toml", "--samples", "3", "--meter-samples", "640", "--packets", "2000"])
             .args(more);
         command
     };
     let told = |mut command: Command| {
         let out = json(&mut command);
-        (out["results"][0]["sensors"].clone(), std::fs::read(folder.path().join("view.exr")).expect("the picture"))
+        let parts = ["sensors", "energy", "bias"].map(|part| out["results"][0][part].clone());
+        (parts, std::fs::read(folder.path().join("view.exr")).expect("the picture"))
     };
     let whole = told(command(&["--json"]));
+    // Whole packets for each of 32 replicates.
+    assert_eq!(whole.0[1]["packets"], 2016);
     let kept = told(command(&["--json", "--checkpoint", "a.state"]));
     assert!(whole == kept, "a state changes the result");
     // A break tears the state: a tenth of its bytes are lost.

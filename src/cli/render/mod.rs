@@ -201,7 +201,7 @@ pub(super) fn run(arguments: &RenderArgs, talk: Talk) -> Result<(), Failure> {
             if work.read.iter().any(|input| output::same_file(Path::new(input), file)) {
                 return Err(Failure::Message(output::overwrites(file)));
             }
-            Some(State::open(file, &work.header(share), a.resume.is_some())?)
+            Some(State::open(file, &work.header(share, a.packets), a.resume.is_some())?)
         }
         None => None,
     };
@@ -258,7 +258,7 @@ pub(super) fn merge(a: &MergeArgs, talk: Talk) -> Result<(), Failure> {
     let job = Job { share: Share::WHOLE, folder, targets: &targets, talk };
     match work.render(&job, Some(&mut state))? {
         None => Ok(()),
-        Some(done) => work.report("merge", done, a.json, a.output.as_deref(), talk, PACKETS),
+        Some(done) => work.report("merge", done, a.json, a.output.as_deref(), talk, state.packets()),
     }
 }
 

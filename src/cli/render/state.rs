@@ -116,6 +116,11 @@ impl State {
         self.files[0].header()
     }
 
+    /// Packets of the energy audit: the most that any of the files asks for, in whatever order they come.
+    pub(super) fn packets(&self) -> u64 {
+        self.files.iter().map(|f| f.header().task.packets).max().unwrap_or(0)
+    }
+
     /// The file that holds replicate or strip `number`.
     fn holder(&mut self, number: usize) -> Option<&mut Spool<File>> {
         self.files.iter_mut().find(|f| f.header().share.has(number))

@@ -152,8 +152,8 @@ impl Work {
         })
     }
 
-    /// The header of the state of a share.
-    pub(super) fn header(&self, share: Share) -> Header {
+    /// The header of the state of a share; `packets` are those of the energy audit.
+    pub(super) fn header(&self, share: Share, packets: u64) -> Header {
         let render = &self.description.render;
         let task = Task {
             scene: self.path.clone(),
@@ -162,6 +162,7 @@ impl Work {
             seed: render.seed,
             full: render.model == Model::Full,
             denoise: self.denoise,
+            packets,
             settings: self.settings.clone(),
         };
         state::header(&self.built, self.meters.len(), &self.fingerprint, share, &task)

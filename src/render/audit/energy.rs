@@ -7,8 +7,11 @@
 //!
 //! It shares lights, materials and surfaces with the path tracer, but walks the other way. Three things are checked:
 //!
-//! - the **balance**, whose only scatter is that of weak packets ending by chance;
-//! - every **light**: what its packets carry is the flux that it states;
+//! - the **balance**, whose only scatter is that of weak packets ending by chance. Where that is so unlikely that no packet ends, the
+//!   replicates do not scatter, yet what goes on is a little too strong; so the standard error is at least that of the chances taken;
+//! - every **light**: what its packets carry is the flux that it states. Every light gets some packets of its own, however faint it
+//!   is beside the others, and the rest are shared out by flux. Where the lights are too many for that, all are drawn by flux, and a light
+//!   that none was drawn for is not checked;
 //! - every **material**: what it scatters, as drawn, is its directional-hemispherical reflectance a(ω) by quadrature or closed form
 //!   times what arrived, at the packets' own directions. That is asked of a few vertices of each replicate (it costs a quadrature), and
 //!   not of materials with mirrors and glass in them, whose share depends on the polarisation that a packet brings. Light that
@@ -30,6 +33,8 @@ use crate::render::scene::Scene;
 const INSTRUMENT: u64 = u64::MAX;
 /// Vertices of each material, in each replicate, that are asked for their reflectance.
 const ASKED: u32 = 4;
+/// Packets that every light gets in each replicate, where half of all are enough for that.
+const OWN: u64 = 16;
 
 /// What became of the flux of the lights, W (over the wavelengths carried).
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +58,8 @@ pub struct Energy {
 pub struct LightAccount {
     /// The flux that it states.
     pub stated_w: f64,
+    /// Packets sent from it.
+    pub packets: u64,
     /// What its packets carried.
     pub emitted_w: Figure,
     /// Whether packets stand for what it does: not so for a production light that falls off as no light does.
@@ -90,7 +97,15 @@ impl LightAccount {
     pub fn is_off(&self) -> bool {
         /// Quadratures of fluxes are this good (pictures' rims, production lights with hard edges).
         const QUADRATURE: f64 = 2e-3;
-        let error = (self.emitted_w.value - self.stated_w).abs() - QUADRATURE * self.stated_w;
+        /// ln 10 000: what makes up this share of N, over N, is in none of N packets once in 10 000 times, and their scatter does not
+        /// know of it.
+        const UNSEEN: f64 = 9.21;
+        if self.packets == 0 {
+            return false;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a number of packets")]
+        let unseen = UNSEEN / self.packets as f64;
+        let error = (self.emitted_w.value - self.stated_w).abs() - (QUADRATURE + unseen) * self.stated_w;
         error > 0.0 && is_off(Figure { value: error, ..self.emitted_w }, self.stated_w)
     }
 }
@@ -115,10 +130,15 @@ struct Ledger<'a> {
     /// What each band adds, nm.
     weights: &'a [f64],
     light: usize,
+    sent: Vec<u64>,
     emitted: Vec<f64>,
     arrived: Vec<f64>,
     absorbed: Vec<f64>,
     escaped: f64,
+    /// What the packet left the last surface with.
+    left: Option<f64>,
+    /// Variance that ending packets by chance gives to the sum of them, W².
+    chance: f64,
     asked: Vec<u32>,
     /// Of the vertices asked: scattered less expected, and arrived.
     excess: Vec<f64>,
@@ -138,17 +158,24 @@ impl Ledger<'_> {
 impl Visitor for Ledger<'_> {
     fn starts(&mut self, light: usize) {
         self.light = light;
+        self.sent[light] += 1;
     }
 
     fn emitted(&mut self, flux: &[f64]) {
         let watts = self.watts(flux);
         self.sound &= watts.is_finite();
         self.emitted[self.light] += watts;
+        self.left = None;
     }
 
     fn flight(&mut self, _: &Ray, length: f64, flux: &[f64]) {
+        let watts = self.watts(flux);
+        if let Some(left) = self.left.take() {
+            // f goes on as f/s with the probability s, of variance f² (1 − s)/s; taken where it does go on, that is over s.
+            self.chance += (watts * (watts - left)).max(0.0);
+        }
         if length.is_infinite() {
-            self.escaped += self.watts(flux);
+            self.escaped += watts;
         }
     }
 
@@ -171,11 +198,57 @@ impl Visitor for Ledger<'_> {
         self.sound &= before.is_finite() && after.is_finite();
         self.arrived[number] += before;
         self.absorbed[number] += before - after;
+        self.left = Some(after);
         if let Some((expected, arrived)) = self.expected.take() {
             self.excess[number] += after - expected;
             self.checked[number] += arrived;
         }
     }
+}
+
+/// How many of the `each` packets of a replicate every light gets; `None` where that is not two for every light that shines (triangles
+/// of a mesh are a light each).
+fn allot(stated: &[f64], each: u64) -> Option<Vec<u64>> {
+    let shines = |w: &f64| *w > 0.0;
+    let lights = stated.iter().filter(|w| shines(w)).count() as u64;
+    let own = OWN.min(each / (2 * lights));
+    if own == 0 {
+        return None;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a number of packets")]
+    let rest = (each - own * lights) as f64;
+    let total: f64 = stated.iter().copied().filter(shines).sum();
+    let (mut sum, mut given) = (0.0, 0);
+    let allotted = (stated.iter())
+        .map(|w| {
+            if !shines(w) {
+                return 0;
+            }
+            sum += w;
+            // Rounded running sums: no packet is lost.
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "between 0 and a number of packets"
+            )]
+            let until = (rest * (sum / total)).round() as u64;
+            let more = until - given;
+            given = until;
+            own + more
+        })
+        .collect();
+    Some(allotted)
+}
+
+/// A step that goes through all of 0..n, a golden section of them at a time, so that any few in a row are spread over it.
+fn step(n: u64) -> u64 {
+    let gcd = |mut a: u64, mut b: u64| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    (n * 5 / 8..n).find(|s| gcd(*s, n) == 1).unwrap_or(1)
 }
 
 /// Sends `packets` packets, a number of them for each of 32 replicates, and counts what becomes of them; `None` where nothing
@@ -201,6 +274,12 @@ pub fn audit(
     if each == 0 || total.is_nan() || total <= 0.0 {
         return None;
     }
+    let allotted = allot(&stated, each);
+    let mut until = allotted.clone().unwrap_or_default();
+    (1..until.len()).for_each(|n| until[n] += until[n - 1]);
+    #[expect(clippy::cast_precision_loss, reason = "numbers of packets")]
+    let share = |light: usize| (until[light] - if light == 0 { 0 } else { until[light - 1] }) as f64 / each as f64;
+    let step = step(each);
     let run = |replicate: usize| {
         let stream = stream(INSTRUMENT, replicate);
         let mut sampler = settings.sampler(stream);
@@ -210,10 +289,13 @@ pub fn audit(
             material_of,
             weights,
             light: 0,
+            sent: vec![0; stated.len()],
             emitted: vec![0.0; stated.len()],
             arrived: vec![0.0; materials],
             absorbed: vec![0.0; materials],
             escaped: 0.0,
+            left: None,
+            chance: 0.0,
             asked: vec![0; materials],
             excess: vec![0.0; materials],
             checked: vec![0.0; materials],
@@ -222,13 +304,21 @@ pub fn audit(
             sound: true,
         };
         for index in 0..each {
+            // Not light by light: the first vertices of a material are those that are asked.
+            let index = index * step % each;
             sampler.start(index);
-            tracer.packet(&mut sampler, &mut ledger);
+            if allotted.is_some() {
+                let light = until.partition_point(|u| *u <= index);
+                tracer.packet_of(light, share(light), &mut sampler, &mut ledger);
+            } else {
+                tracer.packet(&mut sampler, &mut ledger);
+            }
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of packets")]
         let n = each as f64;
         let sums = [&mut ledger.emitted, &mut ledger.arrived, &mut ledger.absorbed];
         sums.into_iter().flatten().chain([&mut ledger.escaped]).for_each(|sum| *sum /= n);
+        ledger.chance /= n * n;
         ledger
     };
     let all: Vec<Ledger<'_>> = (0..REPLICATES).into_par_iter().map(run).collect();
@@ -241,6 +331,8 @@ pub fn audit(
     let lights = (0..stated.len())
         .map(|n| LightAccount {
             stated_w: stated[n],
+            packets: (allotted.as_ref())
+                .map_or_else(|| sound.iter().map(|l| l.sent[n]).sum(), |allotted| allotted[n] * sound.len() as u64),
             emitted_w: of(&|l| l.emitted[n]),
             travels: scene.lights()[n].emits_what_arrives(),
         })
@@ -257,13 +349,16 @@ pub fn audit(
             MaterialAccount { arrived_w: of(&|l| l.arrived[n]), absorbed_w: of(&|l| l.absorbed[n]), excess }
         })
         .collect();
-    let balance = |l: &Ledger<'_>| l.emitted.iter().sum::<f64>() - l.absorbed.iter().sum::<f64>() - l.escaped;
+    let mut balance = of(&|l| l.emitted.iter().sum::<f64>() - l.absorbed.iter().sum::<f64>() - l.escaped);
+    #[expect(clippy::cast_precision_loss, reason = "a number of replicates")]
+    let chance = sound.iter().map(|l| l.chance).sum::<f64>().sqrt() / sound.len() as f64;
+    balance.standard_error = balance.standard_error.max(chance);
     Some(Energy {
         packets: each * sound.len() as u64,
         faulty: each * (all.len() - sound.len()) as u64,
         lights,
         materials: accounts,
         escaped_w: of(&|l| l.escaped),
-        balance_w: of(&balance),
+        balance_w: balance,
     })
 }

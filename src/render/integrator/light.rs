@@ -70,11 +70,29 @@ impl<'a> LightTracer<'a> {
     pub fn packet(&mut self, sampler: &mut Sampler, visitor: &mut impl Visitor) {
         let [choice, u0, u1, hero] = sampler.four();
         let [u2, u3, u4, _] = sampler.four();
-        let Some((index, probability)) = self.lights.draw(choice) else { return };
-        let light = &self.scene.lights()[index];
-        let Some(ray) = light.emit([u0, u1, u2, u3, u4], &mut self.flux) else { return };
+        let Some(drawn) = self.lights.draw(choice) else { return };
+        self.start(drawn, [u0, u1, u2, u3, u4], hero, sampler, visitor);
+    }
+
+    /// Sends one packet of a light, which the caller chose, through the scene; `share` is that of the packets that are sent from it.
+    pub fn packet_of(&mut self, light: usize, share: f64, sampler: &mut Sampler, visitor: &mut impl Visitor) {
+        let [_, u0, u1, hero] = sampler.four();
+        let [u2, u3, u4, _] = sampler.four();
+        self.start((light, share), [u0, u1, u2, u3, u4], hero, sampler, visitor);
+    }
+
+    /// Sends a packet of a light that is drawn with a probability.
+    fn start(
+        &mut self,
+        (light, probability): (usize, f64),
+        u: [f64; 5],
+        hero: f64,
+        sampler: &mut Sampler,
+        visitor: &mut impl Visitor,
+    ) {
+        let Some(ray) = self.scene.lights()[light].emit(u, &mut self.flux) else { return };
         self.flux.iter_mut().for_each(|f| *f /= probability);
-        visitor.starts(index);
+        visitor.starts(light);
         self.fly(ray, hero, sampler, visitor);
     }
 

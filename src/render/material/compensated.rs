@@ -24,6 +24,7 @@ use glam::DVec3;
 use super::albedo::Albedo;
 use crate::brdf::microfacet::Microfacet;
 use crate::brdf::parameter::Error;
+use crate::brdf::reflectance::hemispherical_as_table;
 use crate::brdf::{Brdf, Sampled, sample_by};
 use crate::math::sampling;
 
@@ -130,7 +131,8 @@ impl Brdf for Compensated {
     }
 
     fn albedo(&self, incident: DVec3, reflectance: &mut [f64]) -> f64 {
-        let error = self.single.albedo(incident, reflectance);
+        // The table of what is lost is good to 5e-4: more digits of one scattering would be lost on the sum.
+        let error = hemispherical_as_table(&self.single, incident, reflectance);
         if incident.z <= 0.0 {
             return error;
         }
