@@ -122,7 +122,6 @@ fn a_lobe_in_bins_reads_as_the_table() {
             (value - 1000.0 * rho[0]).abs() < 3.0 * error + 1000.0 * bound,
             "{theta_o}: {value} ± {error}, {rho:?}"
         );
-        println!("{theta_o}: {value} ± {error}, table {} ± {bound}, model {}", rho[0], of_model[0]);
         // θ_h of a bin is up to 1.6° wide where the lobe is (30° of 60 bins), a tenth of it.
         assert!((rho[0] / of_model[0] - 1.0).abs() < 0.02, "{theta_o}: {rho:?} {of_model:?}");
     }
@@ -165,7 +164,7 @@ fn what_is_wrong_with_a_table_is_told() {
     bytes.truncate(bytes.len() - 8);
     std::fs::write(at.join("cut.binary"), bytes).expect("written");
     std::fs::write(at.join("model.toml"), "model = \"lambert\"\nreflectance = 0.5\n").expect("written");
-    std::fs::write(at.join("words.csv"), "theta_i_deg,theta_o_deg,phi_o_deg,channel,value\n0,0,0,R,many\n")
+    std::fs::write(at.join("words.csv"), "theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,channel,value\n0,0,0,0,R,many\n")
         .expect("written");
     constant(at, "xyz.csv", "channel", &[("X", 0.2), ("Y", 0.2), ("Z", 0.2)]);
     let light = "distant = { from = [0, 0, 1], irradiance = \"1000 lx\" }";
