@@ -411,9 +411,7 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
         }
     }
     let bands = built.scene.bands().len();
-    let error = built
-        .wavelength_error
-        .map_or_else(String::new, |e| format!(" (error of their sum up to {})", significant(e, 2)));
+    let error = wavelength_errors(built).map_or_else(String::new, |errors| format!(" ({errors})"));
     let _ = writeln!(out, "\n{bands} wavelengths on every path{error}");
     if readings.iter().any(|r| r.discretisation.is_none()) {
         let interval = format!(
@@ -422,6 +420,12 @@ pub fn text(built: &Built, readings: &[Reading]) -> String {
         let _ = writeln!(out, "± is one standard error; {interval}");
     }
     out
+}
+
+/// What sums over wavelength are off by at most, in words; `None` where the step was asked for.
+fn wavelength_errors(built: &Built) -> Option<String> {
+    let [error, watts] = [built.wavelength_error?, built.radiant_error?].map(|e| significant(e, 2));
+    Some(format!("error of their sum up to {error}, of watts up to {watts}"))
 }
 
 /// A spectrum in rows of as many wavelengths as a line holds.
@@ -530,9 +534,7 @@ pub fn contents_text(built: &Built) -> String {
         let _ = writeln!(out, "sensor  {name}: {kind}, {} points", sensor["points"]);
     }
     let bands = built.scene.bands();
-    let error = built
-        .wavelength_error
-        .map_or_else(String::new, |e| format!(", error of their sum up to {}", significant(e, 2)));
+    let error = wavelength_errors(built).map_or_else(String::new, |errors| format!(", {errors}"));
     let analysis = &built.analysis;
     let paths = contents["model"]["wavelengths"]["paths"].as_str().unwrap_or_default();
     let _ = writeln!(out, "{} wavelengths{error}: {paths}", bands.len());

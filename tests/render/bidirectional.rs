@@ -258,6 +258,8 @@ fn a_scene_says_whether_it_asks_for_packets() {
         (&[ball, lamp], false, false),
         (&[floor, ball, lamp], true, false),
         (&[floor, ball, point], true, true),
+        // Packets do not come to a point through glass either.
+        (&[ball, point], false, true),
     ] {
         let analysis = built(&[&parts.concat(), sensor].concat()).analysis;
         let because = analysis.caustics_because;

@@ -163,7 +163,7 @@ fn a_target_out_of_reach_is_exit_code_1() {
 fn pictures_have_targets() {
     let folder = tempfile::tempdir().expect("a folder");
     let view = "[[sensor]]\nname = \"view\"\ncamera = { at = [0, -3, 1], look_at = [0, 0, 0], resolution = [8, 6] }\n";
-    let floor = "[[shape]]\nrectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }\n";
+    let floor = "[[material]]\nname = \"white\"\nreflectance = 0.5\n[[shape]]\nmaterial = \"white\"\nrectangle = { corner = [-1, -1, 0], edges = [[2, 0, 0], [0, 2, 0]] }\n";
     let run = |text: &str, options: &[&str], code: i32| -> Value {
         let mut command = photopic();
         command.arg("render").arg(scene(&folder, text)).args(["--json", "--packets", "0"]).args(options);

@@ -209,30 +209,3 @@ sphere = { centre = [0, 0.8, 0], radius = "0.05 m" }
     assert!(each > 9.0 - error && each < 10.0 + error, "{each}");
     assert!(landings.polished.len() > landings.plain.len());
 }
-
-/// What glass throws on a floor is found with less noise: the variance of the pixels' luminances over seeds, each relative to the square of its mean and a
-/// hundredth of that of the picture. Its own scatter, from two sets of seeds each, is told apart from the difference.
-#[test]
-fn guided_pictures_have_less_noise() {
-    let small = "[[shape]]\nmaterial = \"white\"\nemission = { radiance = \"36000 cd/m2\", spectrum = \"D65\" }\nrectangle = { corner = [-0.1, -0.1, 2.5], edges = [[0, 0.2, 0], [0.2, 0, 0]] }\n";
-    let built = built(&format!("[render]\nwavelength_step_nm = 100\n{ROOM}{BALL}{small}{VIEW}"));
-    let width = camera(&built).width() as usize;
-    let noise = |guiding, first: u64| -> f64 {
-        let luminances = |seed| -> Vec<f64> {
-            let (rows, _) = picture(&built, &settings(&built, seed, Some(guiding)), 64);
-            let channels = built.scene.bands().len() + 3;
-            let of_row = |row: &[f32]| row[(channels - 2) * width..][..width].to_vec();
-            rows.chunks_exact(channels * width).flat_map(of_row).map(f64::from).collect()
-        };
-        let seeds: Vec<Vec<f64>> = (first..first + 16).map(luminances).collect();
-        let pixels = seeds[0].len();
-        let figures: Vec<(f64, f64)> =
-            (0..pixels).map(|pixel| figure(&seeds.iter().map(|s| s[pixel]).collect::<Vec<_>>())).collect();
-        let dark = 0.01 * figures.iter().map(|(mean, _)| mean).sum::<f64>() / pixels as f64;
-        figures.iter().map(|(mean, error)| error * error / (mean * mean + dark * dark)).sum()
-    };
-    let [guided, plain] = [true, false].map(|guiding| [0, 100].map(|first| noise(guiding, first)));
-    println!("guided {guided:?}, plain {plain:?}");
-    assert!(guided[0].max(guided[1]) < plain[0].min(plain[1]), "{guided:?} {plain:?}");
-    assert!(guided[0] + guided[1] < 0.8 * (plain[0] + plain[1]), "{guided:?} {plain:?}");
-}

@@ -304,7 +304,7 @@ fn what_cannot_be_measured_is_refused_where_it_stands() {
         (light, "goniophotometer = { gamma_step = \"0.01 deg\" }", ":5:19:", "from 0.1 to 90 deg"),
         (light, "goniophotometer = { down = [1, 0, 0], c0 = [2, 0, 0] }", ":5:19:", "two directions"),
         (light, "goniophotometer = { step = 1 }", ":5:21:", "unknown field `step`"),
-        (light, "goniophotometer = {}\ntarget = \"1 %\"", ":4:8:", "expected `meter_samples`"),
+        (light, "goniophotometer = {}\ntarget = \"1 %\"", ":6:10:", "expected `meter_samples`"),
         (light, "integrating_sphere = { of = 1 }", ":5:24:", "unknown field `of`"),
         (&sky, "integrating_sphere = {}", ":7:22:", "light 2 shines from outside"),
         (

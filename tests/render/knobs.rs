@@ -40,6 +40,14 @@ fn luminance(reflections: Option<i32>) -> f64 {
     for (nm, v) in v.filter(|(nm, _)| **nm >= 370.0 && (**nm - 370.0) % 20.0 == 0.0) {
         let rho = 0.3 + 0.5 * ((nm - 400.0) / 300.0).clamp(0.0, 1.0);
         let left = reflections.map_or(1.0, |n| 1.0 - rho.powi(n));
+        // Nodes stand for what is nearest to them, those at the ends for all from 359.5 to 830.5 nm.
+        let v = v * if *nm == 370.0 {
+            20.5
+        } else if *nm == 830.0 {
+            10.5
+        } else {
+            20.0
+        };
         sum += v;
         seen += v * left * rho / (1.0 - rho);
     }

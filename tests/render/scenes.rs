@@ -40,7 +40,7 @@ fn every_scene_is_rendered() {
         command.arg("render").arg(&path).args([
             "--json",
             "--samples",
-            "1",
+            "2",
             "--meter-samples",
             "256",
             "--packets",

@@ -31,12 +31,13 @@ pub struct Analysis {
     pub anisotropic: Vec<String>,
     /// Whether anything scatters: otherwise the light of the lamps is all there is.
     pub global: bool,
-    /// Whether light is gathered or thrown by polished surfaces onto others or onto meters, which packets from the lights find and paths from the camera do
+    /// Whether light is gathered or thrown by polished surfaces onto others, which packets from the lights find and paths from the camera do
     /// not, or hardly.
     pub caustics: bool,
     /// Why, or why not.
     pub caustics_because: &'static str,
-    /// Whether paths from the camera or a meter miss some of that altogether, because its light comes from one direction.
+    /// Whether paths from the camera or a meter miss some of that, or of what is thrown on the meter itself, altogether, because its light comes from one
+    /// direction.
     pub caustics_missed: bool,
     /// Lights of no flux, which were left out.
     pub dark_lights: Vec<String>,
@@ -87,9 +88,9 @@ impl Builder<'_> {
             s.illuminance.is_some() || s.cylindrical.is_some() || s.hemispherical.is_some() || s.spherical.is_some()
         };
         let receives = scatters || self.description.sensor.iter().any(is_meter);
-        let (caustics, caustics_because) = match (polished_surfaces, receives, one_direction, refracts) {
+        let (caustics, caustics_because) = match (polished_surfaces, scatters, one_direction, refracts) {
             (0, ..) => (false, "nothing is polished"),
-            (_, false, ..) => (false, "nothing scatters what polished surfaces throw on it, and no meter receives it"),
+            (_, false, ..) => (false, "nothing scatters what polished surfaces throw on it"),
             (_, _, true, _) => {
                 (true, "paths from a camera or a meter never meet a light of one direction in polished surfaces")
             }
@@ -100,7 +101,7 @@ impl Builder<'_> {
             full,
             caustics,
             caustics_because,
-            caustics_missed: caustics && one_direction,
+            caustics_missed: polished_surfaces > 0 && receives && one_direction,
             polarisation,
             polarisation_because,
             polished_surfaces,
