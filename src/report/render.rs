@@ -202,9 +202,14 @@ fn interval(figure: &Figure, wavelength_error: f64) -> Option<[f64; 2]> {
 }
 
 /// By ascending wavelength: bands are those of densities, then lines.
-fn spectrum(s: &Spectral) -> Value {
+fn ascending(s: &Spectral) -> Vec<(&f64, &Figure)> {
     let mut bands: Vec<_> = s.wavelengths_nm.iter().zip(&s.bands).collect();
     bands.sort_by(|a, b| a.0.total_cmp(b.0));
+    bands
+}
+
+fn spectrum(s: &Spectral) -> Value {
+    let bands = ascending(s);
     json!({
         "wavelengths_nm": bands.iter().map(|(nm, _)| **nm).collect::<Vec<_>>(),
         "values": bands.iter().map(|(_, b)| b.value).collect::<Vec<_>>(),
@@ -437,9 +442,8 @@ fn spectrum_text(s: &Spectral, unit: &str, indent: usize) -> String {
         _ => "W/(m² sr nm)",
     };
     let mut out = format!("{:indent$}  spectrum, nm: {per_nm} (of a line its whole amount)\n", "");
-    let cells: Vec<String> = (s.wavelengths_nm.iter().zip(&s.bands))
-        .map(|(nm, band)| format!("{}: {}", significant(*nm, 6), significant(band.value, 4)))
-        .collect();
+    let cells: Vec<String> =
+        ascending(s).iter().map(|(nm, band)| format!("{nm}: {}", significant(band.value, 4))).collect();
     let wide = cells.iter().map(String::len).max().unwrap_or(0);
     for row in cells.chunks(ROW) {
         let row: Vec<String> = row.iter().map(|cell| format!("{cell:wide$}")).collect();
