@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::opaque::flipped;
+use super::opaque::{flipped, upright};
 use super::{Material, Nature, Scattered, Transport};
 use crate::brdf::parameter::{Error, Parameter, same_bands};
 use crate::brdf::table::SampledTable;
@@ -72,17 +72,6 @@ impl Measured {
         let positive = table.table().range().is_none_or(|[least, _]| least >= 0.0);
         let brdf = OnBands { table, bands, parts: rows.concat(), positive };
         Ok(Self { brdf, two_sided })
-    }
-
-    /// The two directions on the side that was measured; `None` where the surface is dark or they are on different sides.
-    fn upright(&self, a: DVec3, b: DVec3) -> Option<(DVec3, DVec3)> {
-        if a.z > 0.0 && b.z > 0.0 {
-            Some((a, b))
-        } else if self.two_sided && a.z < 0.0 && b.z < 0.0 {
-            Some((flipped(a), flipped(b)))
-        } else {
-            None
-        }
     }
 }
 
@@ -155,7 +144,7 @@ impl Brdf for OnBands {
 
 impl Material for Measured {
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, transport: Transport, values: &mut [f64]) {
-        match (self.upright(incident, outgoing), transport) {
+        match (upright(self.two_sided, incident, outgoing), transport) {
             (Some((i, o)), Transport::Radiance) => self.brdf.evaluate(i, o, values),
             // A path from the light: what it came from is the light's direction.
             (Some((i, o)), Transport::Flux) => self.brdf.evaluate(o, i, values),
@@ -175,17 +164,17 @@ impl Material for Measured {
         if below && !self.two_sided {
             return None;
         }
-        let upright = if below { flipped(outgoing) } else { outgoing };
+        let outgoing = if below { flipped(outgoing) } else { outgoing };
         let drawn = match transport {
-            Transport::Radiance => self.brdf.sample(upright, u, weights)?,
-            Transport::Flux => Backwards(&self.brdf).sample(upright, u, weights)?,
+            Transport::Radiance => self.brdf.sample(outgoing, u, weights)?,
+            Transport::Flux => Backwards(&self.brdf).sample(outgoing, u, weights)?,
         };
         let direction = if below { flipped(drawn.incident) } else { drawn.incident };
         Some(Scattered { direction, pdf: drawn.pdf, delta: false, split: false, eta: 1.0 })
     }
 
     fn pdf(&self, outgoing: DVec3, incident: DVec3, _hero: usize) -> f64 {
-        self.upright(incident, outgoing).map_or(0.0, |(i, o)| self.brdf.pdf(o, i))
+        upright(self.two_sided, incident, outgoing).map_or(0.0, |(i, o)| self.brdf.pdf(o, i))
     }
 
     fn nature(&self) -> Nature {
@@ -193,7 +182,7 @@ impl Material for Measured {
     }
 
     fn albedo(&self, arriving: DVec3, share: &mut [f64]) -> Option<f64> {
-        if let Some((i, _)) = self.upright(arriving, arriving) {
+        if let Some((i, _)) = upright(self.two_sided, arriving, arriving) {
             return Some(self.brdf.albedo(i, share));
         }
         share.fill(0.0);

@@ -26,16 +26,16 @@ impl Opaque {
     pub fn new(brdf: Box<dyn Brdf>, two_sided: bool) -> Self {
         Self { brdf, two_sided }
     }
+}
 
-    /// The two directions on the side that the BRDF knows; `None` where the surface is dark or they are on different sides.
-    fn upright(&self, a: DVec3, b: DVec3) -> Option<(DVec3, DVec3)> {
-        if a.z > 0.0 && b.z > 0.0 {
-            Some((a, b))
-        } else if self.two_sided && a.z < 0.0 && b.z < 0.0 {
-            Some((flipped(a), flipped(b)))
-        } else {
-            None
-        }
+/// Two directions on the side that a BRDF knows; `None` where the surface is dark or they are on different sides.
+pub(super) fn upright(two_sided: bool, a: DVec3, b: DVec3) -> Option<(DVec3, DVec3)> {
+    if a.z > 0.0 && b.z > 0.0 {
+        Some((a, b))
+    } else if two_sided && a.z < 0.0 && b.z < 0.0 {
+        Some((flipped(a), flipped(b)))
+    } else {
+        None
     }
 }
 
@@ -46,7 +46,7 @@ pub(super) fn flipped(d: DVec3) -> DVec3 {
 
 impl Material for Opaque {
     fn evaluate(&self, incident: DVec3, outgoing: DVec3, _transport: Transport, values: &mut [f64]) {
-        match self.upright(incident, outgoing) {
+        match upright(self.two_sided, incident, outgoing) {
             Some((i, o)) => self.brdf.evaluate(i, o, values),
             None => values.fill(0.0),
         }
@@ -70,11 +70,11 @@ impl Material for Opaque {
     }
 
     fn pdf(&self, outgoing: DVec3, incident: DVec3, _hero: usize) -> f64 {
-        self.upright(incident, outgoing).map_or(0.0, |(i, o)| self.brdf.pdf(o, i))
+        upright(self.two_sided, incident, outgoing).map_or(0.0, |(i, o)| self.brdf.pdf(o, i))
     }
 
     fn polarise(&self, outgoing: DVec3, incident: DVec3, components: &mut [Components]) -> bool {
-        self.upright(incident, outgoing).is_some_and(|(i, _)| self.brdf.polarise(i, components))
+        upright(self.two_sided, incident, outgoing).is_some_and(|(i, _)| self.brdf.polarise(i, components))
     }
 
     fn nature(&self) -> Nature {
@@ -82,7 +82,7 @@ impl Material for Opaque {
     }
 
     fn albedo(&self, arriving: DVec3, share: &mut [f64]) -> Option<f64> {
-        if let Some((i, _)) = self.upright(arriving, arriving) {
+        if let Some((i, _)) = upright(self.two_sided, arriving, arriving) {
             return Some(self.brdf.albedo(i, share));
         }
         share.fill(0.0);
